@@ -1,0 +1,159 @@
+//! The one place that touches slotmap: an arena hands out keys, checks them, and knows their order.
+//!
+//! Links between elements are dense `u32` columns indexed by slot; they live in [`Mesh`](crate::Mesh). The slot map
+//! holds no values. Beside it stands a column of versions, because slotmap cannot turn a slot number into a key.
+
+use slotmap::{Key, KeyData, SlotMap};
+
+/// Keys of one kind of element.
+#[derive(Clone, Debug)]
+pub(crate) struct Arena<K: Key> {
+    slots: SlotMap<K, ()>,
+    /// The version of each slot as slotmap has it while occupied (odd), 0 while free. Slot 0 is slotmap's sentinel.
+    versions: Vec<u32>,
+    /// Where each slot stands in the user's order; empty while that is the order of slots.
+    ranks: Vec<u32>,
+}
+
+impl<K: Key> Arena<K> {
+    /// An arena of `count` elements in slots `1..=count`.
+    pub(crate) fn filled(count: usize) -> Self {
+        let mut slots = SlotMap::<K, ()>::with_capacity_and_key(count);
+        let mut versions = Vec::with_capacity(count + 1);
+        versions.push(0);
+        for _ in 0..count {
+            let ffi = slots.insert(()).data().as_ffi();
+            debug_assert_eq!(ffi as u32 as usize, versions.len(), "slotmap fills fresh slots in order");
+            versions.push((ffi >> 32) as u32);
+        }
+        Self { slots, versions, ranks: Vec::new() }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// One past the highest slot ever used: the length of the element's columns.
+    pub(crate) fn slot_count(&self) -> usize {
+        self.versions.len()
+    }
+
+    /// The slot of a live key.
+    pub(crate) fn slot(&self, key: K) -> Option<u32> {
+        let ffi = key.data().as_ffi();
+        self.is_version(ffi as u32, (ffi >> 32) as u32).then_some(ffi as u32)
+    }
+
+    /// Whether `slot` holds the element of this version.
+    pub(crate) fn is_version(&self, slot: u32, version: u32) -> bool {
+        self.versions.get(slot as usize) == Some(&version) && version != 0
+    }
+
+    pub(crate) fn is_live(&self, slot: u32) -> bool {
+        self.versions.get(slot as usize).is_some_and(|&v| v != 0)
+    }
+
+    /// The key of a live slot.
+    pub(crate) fn key(&self, slot: u32) -> K {
+        KeyData::from_ffi(u64::from(self.version(slot)) << 32 | u64::from(slot)).into()
+    }
+
+    pub(crate) fn version(&self, slot: u32) -> u32 {
+        self.versions[slot as usize]
+    }
+
+    /// Live slots, ascending.
+    pub(crate) fn live(&self) -> impl DoubleEndedIterator<Item = u32> + Clone + '_ {
+        self.versions.iter().enumerate().filter(|&(_, &v)| v != 0).map(|(i, _)| i as u32)
+    }
+
+    /// Live slots in the user's order.
+    pub(crate) fn in_user_order(&self) -> Vec<u32> {
+        let mut slots: Vec<u32> = self.live().collect();
+        if !self.ranks.is_empty() {
+            slots.sort_unstable_by_key(|&s| (self.ranks[s as usize], s));
+        }
+        slots
+    }
+
+    /// Whether versions, slot map and ranks agree.
+    pub(crate) fn is_sound(&self) -> bool {
+        let occupied = self.versions.iter().skip(1).filter(|&&v| v != 0).count();
+        self.versions.first() == Some(&0)
+            && occupied == self.slots.len()
+            && (self.ranks.is_empty() || self.ranks.len() == self.versions.len())
+            && self.live().all(|s| self.slots.contains_key(self.key(s)))
+    }
+
+    /// Heap bytes held: 8 per slot in slotmap, 4 in the version column, 4 more once ranks are kept.
+    pub(crate) fn bytes(&self) -> usize {
+        (self.slots.capacity() + 1) * 8 + (self.versions.capacity() + self.ranks.capacity()) * 4
+    }
+}
+
+/// The doors through which tests break what no public call can.
+#[cfg(test)]
+impl<K: Key> Arena<K> {
+    pub(crate) fn set_version(&mut self, slot: u32, version: u32) {
+        self.versions[slot as usize] = version;
+    }
+
+    pub(crate) fn set_ranks(&mut self, ranks: Vec<u32>) {
+        self.ranks = ranks;
+    }
+
+    /// Frees a slot as a removal will.
+    pub(crate) fn free(&mut self, slot: u32) {
+        self.slots.remove(self.key(slot));
+        self.versions[slot as usize] = 0;
+    }
+
+    /// Reuses a slot as an insertion will.
+    pub(crate) fn reuse(&mut self) -> K {
+        let key = self.slots.insert(());
+        let ffi = key.data().as_ffi();
+        self.versions[ffi as u32 as usize] = (ffi >> 32) as u32;
+        key
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::VertexKey;
+
+    #[test]
+    fn a_slot_number_and_its_version_make_the_key_slotmap_made() {
+        let arena = Arena::<VertexKey>::filled(5);
+        let theirs: Vec<_> = arena.slots.keys().collect();
+        let ours: Vec<_> = arena.live().map(|s| arena.key(s)).collect();
+        assert_eq!(ours, theirs);
+    }
+
+    #[test]
+    fn a_stale_key_is_refused_after_its_slot_is_reused() {
+        let mut arena = Arena::<VertexKey>::filled(2);
+        let stale = arena.key(1);
+        arena.free(1);
+        assert_eq!(arena.slot(stale), None);
+        let fresh = arena.reuse();
+        assert_eq!(arena.slot(fresh), Some(1), "slotmap reuses the freed slot");
+        assert_eq!(arena.slot(stale), None);
+        assert!(arena.is_sound());
+    }
+
+    #[test]
+    fn ranks_carry_the_users_order_over_any_order_of_slots() {
+        let mut arena = Arena::<VertexKey>::filled(3);
+        arena.set_ranks(vec![0, 2, 0, 1]);
+        assert_eq!(arena.in_user_order(), [2, 3, 1]);
+    }
+
+    #[test]
+    fn null_and_forged_keys_are_refused() {
+        let arena = Arena::<VertexKey>::filled(1);
+        assert_eq!(arena.slot(VertexKey::null()), None);
+        assert_eq!(arena.slot(KeyData::from_ffi(u64::MAX).into()), None);
+        assert_eq!(arena.slot(KeyData::from_ffi(1 << 32).into()), None, "the sentinel");
+    }
+}

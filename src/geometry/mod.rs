@@ -1,0 +1,28 @@
+//! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures.
+
+pub(crate) mod measure;
+pub(crate) mod normals;
+pub(crate) mod triangulate;
+
+use glam::DVec3;
+
+/// The power of two that brings the largest coordinate of all points to about one, so that products of coordinates
+/// neither overflow nor vanish. 1 if there is nothing to scale.
+pub(crate) fn unit_scale(points: impl Iterator<Item = DVec3>) -> f64 {
+    let largest = points.fold(0.0f64, |m, p| m.max(p.abs().max_element()));
+    if largest > 0.0 && largest.is_finite() {
+        // 2^-exponent, kept where it and its inverse are normal numbers.
+        let exponent = (largest.to_bits() >> 52) as i64 - 1023;
+        f64::from_bits(((1023 - exponent.clamp(-1000, 1000)) as u64) << 52)
+    } else {
+        1.0
+    }
+}
+
+/// The direction of a vector, or zero if it has none; safe for any length.
+pub(crate) fn direction(v: DVec3) -> DVec3 {
+    let scale = unit_scale(std::iter::once(v));
+    let scaled = v * scale;
+    let length = scaled.length();
+    if length > 0.0 && length.is_finite() { scaled / length } else { DVec3::ZERO }
+}

@@ -1,0 +1,421 @@
+//! The one vocabulary for accounts of what an operation changed: [`Outcome`], [`Report`], [`Maps`].
+
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// What a lossy operation returns: the result, the account of what was changed, and the old <-> new relations.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Outcome<T> {
+    /// The result.
+    pub value: T,
+    /// What was changed, element by element.
+    pub report: Report,
+    /// Which input vertices and faces became which output vertices and faces.
+    pub maps: Maps,
+}
+
+/// An element of the input, in the input's own numbering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Element {
+    /// A vertex by its index.
+    Vertex(u32),
+    /// A face by its index.
+    Face(u32),
+    /// An edge by the two vertices it joins, the lower index first.
+    Edge([u32; 2]),
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vertex(v) => write!(f, "vertex {v}"),
+            Self::Face(face) => write!(f, "face {face}"),
+            Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
+        }
+    }
+}
+
+macro_rules! named {
+    ($(#[$meta:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $text:literal,)* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+        #[non_exhaustive]
+        pub enum $name { $($(#[$doc])* $variant,)* }
+
+        impl $name {
+            /// The name used in JSON.
+            pub fn as_str(self) -> &'static str {
+                match self { $(Self::$variant => $text,)* }
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.as_str())
+            }
+        }
+    };
+}
+
+named! {
+    /// What was found at a place, and thereby what was done about it.
+    Kind {
+        /// A vertex with a NaN or infinite coordinate; dropped.
+        NonFiniteVertex = "non_finite_vertex",
+        /// A face with a non-finite vertex; dropped.
+        NonFiniteFace = "non_finite_face",
+        /// A face with an index outside the vertices; dropped.
+        OutOfRangeFace = "out_of_range_face",
+        /// A face the input states with fewer than three corners; dropped.
+        ShortFace = "short_face",
+        /// A vertex merged into another at a different position, within the tolerance.
+        MergedVertex = "merged_vertex",
+        /// A face that named one vertex several times in a row (or ran along an edge and back); the repeats were removed.
+        RepeatedCorner = "repeated_corner",
+        /// A face with fewer than three distinct corners left; dropped.
+        DegenerateFace = "degenerate_face",
+        /// A face that touched itself at a vertex or along an edge; replaced by simple faces that cover the same corners.
+        PinchedFace = "pinched_face",
+        /// A face with the same corner cycle as an earlier one, in either direction; dropped.
+        DuplicateFace = "duplicate_face",
+        /// A face whose winding was reversed.
+        FlippedFace = "flipped_face",
+        /// An edge with three or more faces; its faces were paired, or left with boundary.
+        NonManifoldEdge = "non_manifold_edge",
+        /// An edge cut open because the surface around it cannot be oriented.
+        CutEdge = "cut_edge",
+        /// A vertex whose faces fell into several fans; one vertex was made for each.
+        PinchedVertex = "pinched_vertex",
+        /// An edge that doubled another between the same two vertices; a vertex was put at its midpoint.
+        ParallelEdge = "parallel_edge",
+    }
+}
+
+named! {
+    /// A step of an operation, in the order in which steps run.
+    Step {
+        /// Dropping of non-finite vertices, and of faces that name them, are out of range or too short.
+        DropInvalid = "drop_invalid",
+        /// Merging of vertices at the same position, or within a tolerance.
+        Weld = "weld",
+        /// Repair of faces that name a vertex more than once.
+        RepairPolygons = "repair_polygons",
+        /// Dropping of faces that are there already.
+        DropDuplicates = "drop_duplicates",
+        /// Making windings agree across edges.
+        Unify = "unify",
+        /// Pairing of the faces at edges with three or more of them.
+        PairFaces = "pair_faces",
+        /// Cutting of surfaces that cannot be oriented.
+        CutEdges = "cut_edges",
+        /// Splitting of vertices so that each has one fan.
+        SplitVertices = "split_vertices",
+    }
+}
+
+/// One change, with its element in the input's numbering and its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Record {
+    /// The step that acted.
+    pub step: Step,
+    /// What was found.
+    pub kind: Kind,
+    /// Where, in the input's numbering.
+    pub element: Element,
+    /// Where in space: the vertex, the edge's midpoint, the mean of the face's corners. `None` when not finite.
+    pub place: Option<DVec3>,
+}
+
+/// What one step did in all, recorded or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct StepSummary {
+    /// The step.
+    pub step: Step,
+    /// How many elements it changed. An exact weld counts its merges here and keeps no record of them: it moves
+    /// nothing, and [`Maps`] names every one.
+    pub changed: usize,
+    /// The tolerance it used, in the mesh's units, if it has one.
+    pub tolerance: Option<f64>,
+}
+
+/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Report {
+    /// The steps that ran, in order.
+    pub steps: Vec<StepSummary>,
+    /// The changes, in the order of the steps, and by element within a step.
+    pub records: Vec<Record>,
+}
+
+impl Report {
+    /// Whether there is no record.
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// The number of records of one kind. Linear in the records.
+    pub fn count(&self, kind: Kind) -> usize {
+        self.records.iter().filter(|r| r.kind == kind).count()
+    }
+
+    /// The number of records of each kind that occurs.
+    pub fn counts(&self) -> BTreeMap<Kind, usize> {
+        let mut counts = BTreeMap::new();
+        for record in &self.records {
+            *counts.entry(record.kind).or_insert(0) += 1;
+        }
+        counts
+    }
+}
+
+/// Where old vertices and faces went, and where new ones come from.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Maps, Relation};
+/// let weld = Maps { vertices: Relation::from_map(&[Some(0), Some(1), Some(0)], 2), faces: Relation::identity(1) };
+/// assert_eq!(weld.vertices.new_of(2), &[0]);
+/// assert_eq!(weld.vertices.old_of(0), &[0, 2]);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Maps {
+    /// Vertices.
+    pub vertices: Relation,
+    /// Faces.
+    pub faces: Relation,
+}
+
+impl Maps {
+    /// Nothing was renumbered.
+    pub fn identity(vertices: usize, faces: usize) -> Self {
+        Self { vertices: Relation::identity(vertices), faces: Relation::identity(faces) }
+    }
+
+    /// The relations of this operation followed by `next`.
+    ///
+    /// # Errors
+    /// [`MapMismatch`] when `next` does not start where this one ends.
+    pub fn then(&self, next: &Self) -> Result<Self, MapMismatch> {
+        Ok(Self { vertices: self.vertices.then(&next.vertices)?, faces: self.faces.then(&next.faces)? })
+    }
+
+    /// The relations read backwards.
+    pub fn inverse(&self) -> Self {
+        Self { vertices: self.vertices.inverse(), faces: self.faces.inverse() }
+    }
+}
+
+/// Two relations cannot be composed: the first ends with another number of elements than the second begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the first relation ends with {first} elements, the second begins with {second}")]
+pub struct MapMismatch {
+    /// The new elements of the first relation.
+    pub first: usize,
+    /// The old elements of the second.
+    pub second: usize,
+}
+
+/// A many-to-many relation between old and new indices, readable both ways.
+///
+/// An old element that was dropped has no new one; one that was split has several; a new element made from nothing
+/// has no old one. Lists are ascending. Memory: 4 bytes per pair and direction, and 4 per element where lists differ
+/// in length.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(into = "RelationLists"))]
+pub struct Relation {
+    forward: Lists,
+    backward: Lists,
+}
+
+/// What a relation looks like in JSON: for each old index its new ones, for each new index its old ones.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize)]
+struct RelationLists {
+    new_of: Vec<Vec<u32>>,
+    old_of: Vec<Vec<u32>>,
+}
+
+#[cfg(feature = "serde")]
+impl From<Relation> for RelationLists {
+    fn from(r: Relation) -> Self {
+        let lists = |l: &Lists| (0..l.len()).map(|i| l.get(i).to_vec()).collect();
+        Self { new_of: lists(&r.forward), old_of: lists(&r.backward) }
+    }
+}
+
+/// Lists of indices, one after the other. `starts` is empty when every list holds exactly one index.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Lists {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    fn len(&self) -> usize {
+        if self.starts.is_empty() { self.items.len() } else { self.starts.len() - 1 }
+    }
+
+    fn get(&self, i: usize) -> &[u32] {
+        if self.starts.is_empty() {
+            self.items.get(i..i + 1).unwrap_or(&[])
+        } else if i + 1 < self.starts.len() {
+            &self.items[self.starts[i] as usize..self.starts[i + 1] as usize]
+        } else {
+            &[]
+        }
+    }
+
+    /// Groups pairs `(list, item)` that come in ascending order of item; a counting sort.
+    fn group(count: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let mut starts = vec![0u32; count + 1];
+        for (list, _) in pairs.clone() {
+            starts[list as usize + 1] += 1;
+        }
+        let single = starts[1..].iter().all(|&n| n == 1);
+        for i in 0..count {
+            starts[i + 1] += starts[i];
+        }
+        let mut items = vec![0u32; starts[count] as usize];
+        let mut at = starts.clone();
+        for (list, item) in pairs {
+            let slot = &mut at[list as usize];
+            items[*slot as usize] = item;
+            *slot += 1;
+        }
+        Self { starts: if single { Vec::new() } else { starts }, items }
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
+        (0..self.len()).flat_map(move |i| self.get(i).iter().map(move |&item| (i as u32, item)))
+    }
+}
+
+impl Relation {
+    /// Every element stays what it is.
+    pub fn identity(count: usize) -> Self {
+        let lists = Lists { starts: Vec::new(), items: (0..count as u32).collect() };
+        Self { forward: lists.clone(), backward: lists }
+    }
+
+    /// Every old element has one new one or none. Entries at or past `new_count` count as none.
+    pub fn from_map(new_of_old: &[Option<u32>], new_count: usize) -> Self {
+        let pairs = new_of_old
+            .iter()
+            .enumerate()
+            .filter_map(|(old, new)| new.filter(|&n| (n as usize) < new_count).map(|n| (old as u32, n)));
+        Self {
+            forward: Lists::group(new_of_old.len(), pairs.clone()),
+            backward: Lists::group(new_count, pairs.map(|(old, new)| (new, old))),
+        }
+    }
+
+    /// Any pairs `(old, new)`, in any order; repeats count once, pairs out of range not at all. O(n log n).
+    pub fn from_pairs(old_count: usize, new_count: usize, pairs: impl IntoIterator<Item = (u32, u32)>) -> Self {
+        let mut pairs: Vec<_> = pairs
+            .into_iter()
+            .filter(|&(old, new)| (old as usize) < old_count && (new as usize) < new_count)
+            .collect();
+        if !pairs.is_sorted() {
+            pairs.sort_unstable();
+        }
+        pairs.dedup();
+        Self {
+            forward: Lists::group(old_count, pairs.iter().copied()),
+            backward: Lists::group(new_count, pairs.iter().map(|&(old, new)| (new, old))),
+        }
+    }
+
+    /// The number of old elements.
+    pub fn old_len(&self) -> usize {
+        self.forward.len()
+    }
+
+    /// The number of new elements.
+    pub fn new_len(&self) -> usize {
+        self.backward.len()
+    }
+
+    /// The new elements that old element `i` became, ascending; none if it was dropped or never was.
+    pub fn new_of(&self, i: usize) -> &[u32] {
+        self.forward.get(i)
+    }
+
+    /// The old elements that new element `i` was made from, ascending.
+    pub fn old_of(&self, i: usize) -> &[u32] {
+        self.backward.get(i)
+    }
+
+    /// Whether every element stays what it is.
+    pub fn is_identity(&self) -> bool {
+        self.forward.starts.is_empty()
+            && self.backward.starts.is_empty()
+            && self.forward.items.iter().enumerate().all(|(i, &n)| n as usize == i)
+    }
+
+    /// This relation followed by `next`.
+    ///
+    /// # Errors
+    /// [`MapMismatch`] when `next` does not start where this one ends.
+    pub fn then(&self, next: &Self) -> Result<Self, MapMismatch> {
+        if self.new_len() != next.old_len() {
+            return Err(MapMismatch { first: self.new_len(), second: next.old_len() });
+        }
+        let pairs = self
+            .forward
+            .pairs()
+            .flat_map(|(old, mid)| next.new_of(mid as usize).iter().map(move |&new| (old, new)));
+        Ok(Self::from_pairs(self.old_len(), next.new_len(), pairs))
+    }
+
+    /// The relation read backwards.
+    pub fn inverse(&self) -> Self {
+        Self { forward: self.backward.clone(), backward: self.forward.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_relation_followed_by_its_inverse_relates_the_merged_elements() {
+        let weld = Relation::from_map(&[Some(0), Some(0), None, Some(1)], 2);
+        let around = weld.then(&weld.inverse()).unwrap();
+        assert_eq!(around.new_of(0), &[0, 1]);
+        assert_eq!(around.new_of(2), &[] as &[u32]);
+        assert_eq!(around.new_of(3), &[3]);
+    }
+
+    #[test]
+    fn a_split_reads_both_ways() {
+        let split = Relation::from_pairs(2, 3, [(1, 2), (0, 0), (1, 1), (1, 2)]);
+        assert_eq!(split.new_of(1), &[1, 2]);
+        assert_eq!(split.old_of(2), &[1]);
+        assert_eq!(split.new_of(9), &[] as &[u32]);
+    }
+
+    #[test]
+    fn composing_relations_of_different_sizes_is_refused() {
+        let refused = Relation::identity(2).then(&Relation::identity(3));
+        assert_eq!(refused, Err(MapMismatch { first: 2, second: 3 }));
+    }
+
+    #[test]
+    fn identity_is_recognised_however_it_was_made() {
+        assert!(Relation::from_map(&[Some(0), Some(1)], 2).is_identity());
+        assert!(Relation::identity(2).then(&Relation::identity(2)).unwrap().is_identity());
+        assert!(!Relation::from_map(&[Some(1), Some(0)], 2).is_identity());
+        assert!(!Relation::from_map(&[Some(0)], 2).is_identity());
+    }
+}

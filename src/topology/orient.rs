@@ -1,0 +1,196 @@
+//! Winding: which faces to reverse so that neighbours agree, or the cycle of faces that makes it impossible.
+
+use super::{FaceOf, Topology, UnionFind};
+use crate::indexed::list;
+use crate::matching::NONE;
+use crate::report::{Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
+use crate::{IndexedMesh, Polygons};
+use glam::DVec3;
+use std::collections::VecDeque;
+use std::fmt;
+
+/// Some parts of the surface cannot be oriented.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct NotOrientable {
+    /// For each such part, a closed walk of faces, each sharing a two-face edge with the next and the last with the
+    /// first, along which the winding comes back reversed.
+    pub cycles: Vec<Vec<u32>>,
+}
+
+impl fmt::Display for NotOrientable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown: Vec<String> =
+            self.cycles.iter().map(|c| format!("a cycle of {} faces from face {}", c.len(), c[0])).collect();
+        list(f, "not orientable", &shown)
+    }
+}
+
+/// Reverses faces so that the two at every two-face edge are wound alike.
+///
+/// Each part that hangs together across two-face edges is unified by itself, and the largest piece of it whose winding
+/// is consistent keeps its winding (the one with the lowest face, among equals). Edges with three or more faces are
+/// never crossed. A reversed face keeps its first corner. Given normals and the vertices stay as they are. O(corners),
+/// on the same matched half-edges that [`Mesh::build`](crate::Mesh::build) uses.
+///
+/// # Errors
+/// [`NotOrientable`] with a witness for each part that cannot be oriented.
+///
+/// # Examples
+/// ```
+/// use meshwright::{IndexedMesh, Mesh, glam::DVec3, unify_winding};
+/// let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y];
+/// let mixed = IndexedMesh::from_triangles(points, &[[0, 1, 2], [1, 2, 3]])?;
+/// let unified = unify_winding(&mixed.topology())?;
+/// assert_eq!(&unified.value.polygons()[1], &[1, 3, 2]);
+/// assert_eq!(unified.report.records.len(), 1);
+/// assert!(Mesh::build(&unified.value).is_ok());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, NotOrientable> {
+    let mesh = topology.mesh;
+    let mut polygons = mesh.polygons().clone();
+    let mut report = Report::default();
+    if topology.matching.any_conflict {
+        let found = orient(&polygons, &topology.face_of, &topology.mates());
+        if !found.cycles.is_empty() {
+            return Err(NotOrientable { cycles: found.cycles });
+        }
+        flip_faces(&mut polygons, None, &found.flip);
+        for (face, _) in found.flip.iter().enumerate().filter(|(_, flip)| **flip) {
+            let corners = &mesh.polygons()[face];
+            let sum: DVec3 = corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
+            report.records.push(Record {
+                step: Step::Unify,
+                kind: Kind::FlippedFace,
+                element: Element::Face(face as u32),
+                place: Some(sum),
+            });
+        }
+    }
+    report.steps.push(StepSummary { step: Step::Unify, changed: report.records.len(), tolerance: None });
+    let normals = mesh.normals().map(<[DVec3]>::to_vec);
+    Ok(Outcome {
+        value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, normals),
+        report,
+        maps: Maps::identity(mesh.vertex_count(), mesh.face_count()),
+    })
+}
+
+/// What [`orient`] found.
+pub(crate) struct Orientation {
+    /// The faces to reverse.
+    pub(crate) flip: Vec<bool>,
+    /// One cycle of faces per part that cannot be oriented.
+    pub(crate) cycles: Vec<Vec<u32>>,
+    /// The corners, one of each pair, at which flipped faces still conflict: empty if there is no cycle.
+    pub(crate) conflicts: Vec<u32>,
+}
+
+/// Decides which faces to reverse, given for each corner its mate across the edge or [`NONE`].
+pub(crate) fn orient(polygons: &Polygons, face_of: &FaceOf, mates: &[u32]) -> Orientation {
+    let faces = polygons.len();
+    let alike = |c: usize, m: u32| polygons.corners()[c] == polygons.corners()[m as usize];
+
+    // Pieces of consistent winding, and their sizes.
+    let mut pieces = UnionFind::new(faces);
+    for (c, &m) in mates.iter().enumerate() {
+        if m != NONE && (m as usize) > c && !alike(c, m) {
+            pieces.join(face_of.face(c), face_of.face(m as usize));
+        }
+    }
+    let mut size = vec![0u32; faces];
+    for f in 0..faces as u32 {
+        size[pieces.root(f) as usize] += 1;
+    }
+
+    let mut found = Orientation { flip: vec![false; faces], cycles: Vec::new(), conflicts: Vec::new() };
+    // The face from which each was reached; itself for the first of its part.
+    let mut parent = vec![NONE; faces];
+    let mut queue = VecDeque::new();
+    let mut part = Vec::new();
+    for seed in 0..faces {
+        if parent[seed] != NONE {
+            continue;
+        }
+        parent[seed] = seed as u32;
+        queue.push_back(seed as u32);
+        part.clear();
+        let mut keeper = seed as u32;
+        let mut cycle = None;
+        let conflicts = found.conflicts.len();
+        while let Some(f) = queue.pop_front() {
+            part.push(f);
+            let root = pieces.root(f);
+            let (now, best) = (size[root as usize], size[pieces.root(keeper) as usize]);
+            if now > best || now == best && root < pieces.root(keeper) {
+                keeper = root;
+            }
+            for c in polygons.starts()[f as usize]..polygons.starts()[f as usize + 1] {
+                let m = mates[c];
+                if m == NONE {
+                    continue;
+                }
+                let g = face_of.face(m as usize);
+                let flip = found.flip[f as usize] ^ alike(c, m);
+                if parent[g as usize] == NONE {
+                    parent[g as usize] = f;
+                    found.flip[g as usize] = flip;
+                    queue.push_back(g);
+                } else if found.flip[g as usize] != flip && (m as usize) > c {
+                    found.conflicts.push(c as u32);
+                    cycle = cycle.or(Some((f, g)));
+                }
+            }
+        }
+        if found.flip[keeper as usize] {
+            part.iter().for_each(|&f| found.flip[f as usize] ^= true);
+        }
+        match cycle {
+            Some((f, g)) => found.cycles.push(closed_walk(&parent, f, g)),
+            None => found.conflicts.truncate(conflicts),
+        }
+    }
+    found
+}
+
+/// The tree paths of two neighbouring faces to their nearest common face, as one walk from `f` to `g`.
+fn closed_walk(parent: &[u32], f: u32, g: u32) -> Vec<u32> {
+    let path = |mut f: u32| {
+        let mut path = vec![f];
+        while parent[f as usize] != f {
+            f = parent[f as usize];
+            path.push(f);
+        }
+        path
+    };
+    let (mut up, mut down) = (path(f), path(g));
+    while up.len() > 1 && down.len() > 1 && up[up.len() - 2] == down[down.len() - 2] {
+        up.pop();
+        down.pop();
+    }
+    down.pop();
+    up.extend(down.into_iter().rev());
+    up
+}
+
+/// Reverses the given faces, each of which keeps its first corner, and moves the mates of their corners along.
+pub(crate) fn flip_faces(polygons: &mut Polygons, mates: Option<&mut Vec<u32>>, flip: &[bool]) {
+    if let Some(mates) = mates {
+        // Reversed, the half-edge of corner i in a face of n is that of corner n - 1 - i before.
+        let moved = |c: usize, face: usize| {
+            let (start, end) = (polygons.starts()[face], polygons.starts()[face + 1]);
+            if flip[face] { start + end - 1 - c } else { c }
+        };
+        let face_of = FaceOf::new(polygons);
+        for m in mates.iter_mut().filter(|m| **m != NONE) {
+            *m = moved(*m as usize, face_of.face(*m as usize) as usize) as u32;
+        }
+        for face in (0..flip.len()).filter(|&f| flip[f]) {
+            mates[polygons.starts()[face]..polygons.starts()[face + 1]].reverse();
+        }
+    }
+    for face in (0..flip.len()).filter(|&f| flip[f]) {
+        polygons.reverse(face);
+    }
+}
