@@ -130,7 +130,7 @@ impl From<&Mesh> for IndexedMesh {
 
 /// Lays out the mesh of a matching without conflicts and 3+ edges; `None` if a vertex is pinched or a face is there
 /// twice.
-fn assemble(pool: &IndexedMesh, matching: &Matching) -> Option<Mesh> {
+pub(crate) fn assemble(pool: &IndexedMesh, matching: &Matching) -> Option<Mesh> {
     let polygons = pool.polygons();
     let halfedges = 2 * (matching.edges.len() + 1);
     let mut mesh = Mesh {

@@ -155,9 +155,18 @@ impl Matching {
         self.more.chunk_by(|a, b| a.0 == b.0).map(|uses| uses[0].0 as usize)
     }
 
-    /// Whether two corners of one edge run the same way along it. Both must use the same edge.
-    pub(crate) fn run_alike(&self, polygons: &Polygons, a: usize, b: usize) -> bool {
-        polygons.corners()[a] == polygons.corners()[b]
+    /// For each corner, the corner across its edge, or [`NONE`] where the edge has not exactly two faces.
+    pub(crate) fn mates(&self) -> Vec<u32> {
+        let mut mates = vec![NONE; self.use_of.len()];
+        for (e, edge) in self.edges.iter().enumerate() {
+            if let Some(second) = edge.second()
+                && !self.is_nonmanifold(e)
+            {
+                mates[edge.first()] = second as u32;
+                mates[second] = edge.first() as u32;
+            }
+        }
+        mates
     }
 }
 
@@ -191,7 +200,7 @@ mod tests {
             }
             assert_eq!(m.is_nonmanifold(e), uses.len() > 2);
             if uses.len() > 1 {
-                assert_eq!(m.edges[e].is_conflict(), m.run_alike(polygons, uses[0], uses[1]));
+                assert_eq!(m.edges[e].is_conflict(), polygons.corners()[uses[0]] == polygons.corners()[uses[1]]);
             }
         }
         ours.sort();

@@ -378,6 +378,15 @@ impl Relation {
         Ok(Self::from_pairs(self.old_len(), next.new_len(), pairs))
     }
 
+    /// The same with new elements added at the end that come from nothing.
+    pub(crate) fn widened(mut self, new_len: usize) -> Self {
+        if new_len > self.new_len() {
+            let pairs: Vec<_> = self.backward.pairs().collect();
+            self.backward = Lists::group(new_len, pairs.into_iter());
+        }
+        self
+    }
+
     /// The relation read backwards.
     pub fn inverse(&self) -> Self {
         Self { forward: self.backward.clone(), backward: self.forward.clone() }

@@ -49,6 +49,12 @@ impl Polygons {
         Self { starts: (0..=triangles.len()).map(|i| 3 * i).collect(), corners: triangles.as_flattened().to_vec() }
     }
 
+    /// Removes all faces and keeps the room.
+    pub fn clear(&mut self) {
+        self.starts.truncate(1);
+        self.corners.clear();
+    }
+
     /// Appends a face of any degree, zero included.
     pub fn push(&mut self, corners: impl IntoIterator<Item = u32>) {
         self.corners.extend(corners);
@@ -88,10 +94,6 @@ impl Polygons {
 
     pub(crate) fn starts(&self) -> &[usize] {
         &self.starts
-    }
-
-    pub(crate) fn corners_mut(&mut self) -> &mut [u32] {
-        &mut self.corners
     }
 
     /// Reverses the winding of face `i`, which keeps its first corner. Does nothing past the end.

@@ -1,7 +1,9 @@
 //! The state a soup is in.
 
+use super::pool::Pool;
 use super::{CleanError, Weld};
-use crate::geometry::measure::Aabb;
+use crate::geometry::measure::{Aabb, measures};
+use crate::report::Kind;
 use crate::PolygonSoup;
 use std::collections::BTreeMap;
 
@@ -61,12 +63,65 @@ pub struct Facts {
     pub bbox: Option<Aabb>,
 }
 
-/// Tells what state a soup is in, after a weld; nothing is repaired or dropped silently: faces that cannot enter the
-/// topology are counted apart.
+/// Tells what state a soup is in, after a weld. Nothing is repaired: faces that name a vertex twice enter the topology
+/// as clean-up would repair them and are counted, faces that cannot enter it are counted apart. O(corners), with a
+/// sort of faces that share their lowest edge.
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, cleanup::{Weld, inspect}, glam::DVec3};
+/// let triangle = Polygons::from_triangles(&[[0, 1, 2]]);
+/// let facts = inspect(&PolygonSoup::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], triangle), Weld::Exact)?;
+/// assert_eq!((facts.boundary_edges, facts.closed, facts.area), (3, false, 0.5));
+/// # Ok::<(), meshwright::cleanup::CleanError>(())
+/// ```
 pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
-    let _ = weld;
-    Ok(Facts { vertices: soup.positions.len(), faces: soup.polygons.len(), ..Facts::default() })
+    let mut pool = Pool::new(soup, weld)?;
+    let count = |kind| pool.report.count(kind);
+    let mut facts = Facts {
+        vertices: soup.positions.len(),
+        faces: soup.polygons.len(),
+        degenerate_faces: pool.degenerate_faces,
+        out_of_range_faces: count(Kind::OutOfRangeFace),
+        short_faces: count(Kind::ShortFace),
+        nonfinite_vertices: count(Kind::NonFiniteVertex),
+        bbox: Aabb::around(pool.positions.iter().copied()),
+        ..Facts::default()
+    };
+    let mut named = vec![false; soup.positions.len()];
+    for face in soup.polygons.iter() {
+        *facts.face_degrees.entry(face.len()).or_insert(0) += 1;
+        for &v in face {
+            if let Some(named) = named.get_mut(v as usize) {
+                *named = true;
+            }
+        }
+    }
+    facts.isolated_vertices = named.iter().filter(|n| !**n).count();
+
+    let indexed = pool.lend();
+    let topology = indexed.topology();
+    facts.used_vertices = indexed.vertex_count() - topology.isolated_vertices().len();
+    facts.components = topology.components().1;
+    facts.boundary_edges = topology.boundary_edges().count();
+    facts.boundary_loops = topology.boundary_pieces();
+    facts.nonmanifold_edges = topology.nonmanifold_edges().count();
+    facts.nonmanifold_vertices = topology.pinched_vertices().len();
+    facts.conflicting_edges = topology.conflicting_edges().count();
+    facts.duplicate_faces = topology.duplicate_faces().len();
+    facts.closed = topology.is_closed();
+    facts.manifold = facts.nonmanifold_edges == 0 && facts.nonmanifold_vertices == 0;
+    facts.oriented = facts.conflicting_edges == 0;
+    facts.orientable = topology.orientable().is_ok();
+    facts.euler_characteristic =
+        facts.used_vertices as i64 - topology.edge_count() as i64 + indexed.face_count() as i64;
+    let one_surface = facts.closed && facts.manifold && facts.orientable && facts.components == 1;
+    facts.genus = one_surface.then(|| ((2 - facts.euler_characteristic) / 2).unsigned_abs());
+    let measures = measures(indexed.positions(), indexed.polygons());
+    facts.area = measures.area;
+    facts.volume = (facts.closed && facts.oriented).then_some(measures.volume);
+    Ok(facts)
 }

@@ -5,11 +5,22 @@
 //! exist.
 
 mod facts;
+mod pair;
+mod polygons;
+mod pool;
+mod split;
+mod weld;
 
 pub use facts::{Facts, inspect};
+pub use weld::propose_tolerance;
 
-use crate::report::{Maps, Outcome, Report};
-use crate::{Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
+use crate::build::assemble;
+use crate::matching::{Matching, NONE};
+use crate::report::{Element, Kind, Maps, Outcome, Step, StepSummary};
+use crate::topology::{FaceOf, duplicate_faces, flip_faces, next_corner, orient};
+use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
+use glam::DVec3;
+use pool::Pool;
 
 /// What clean-up is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,7 +58,7 @@ pub struct CleanOptions<'a> {
 }
 
 /// Why there is no answer.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CleanError {
     /// The tolerance is negative, NaN or infinite.
@@ -59,6 +70,9 @@ pub enum CleanError {
         /// The number of vertices, faces or corners.
         elements: usize,
     },
+    /// The result was not a manifold after all. This is a bug of this crate; please report it with the input.
+    #[error("bug in the clean-up: {0}")]
+    Bug(BuildError),
     /// The hook said stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -66,19 +80,185 @@ pub enum CleanError {
 
 /// Makes a valid mesh of any soup and accounts for every change.
 ///
+/// The steps, each named in the report: invalid elements are dropped; vertices welded; faces that name a vertex twice
+/// repaired; duplicate faces dropped, in either direction; windings unified per part; the faces at edges with three or
+/// more of them paired, so that closed shells stay closed; windings unified again; parts that cannot be oriented cut
+/// open; vertices split so that each has one fan. A soup without defects comes out as it is, with an empty record.
+///
+/// Vertices keep the soup's order (the lowest of those merged counts), and so do faces; what a split adds comes last.
+/// Given vertex normals are carried from the lowest of the merged vertices. Splits leave coincident vertices: clean the
+/// result with [`Weld::None`], and nothing changes.
+///
+/// O(n log n) in the corners at worst, linear without defects.
+///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Kind, PolygonSoup, Polygons, cleanup::{CleanOptions, clean}, glam::DVec3};
+/// // Two triangles, unwelded, the second wound the wrong way.
+/// let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X, DVec3::Y, DVec3::ONE];
+/// let soup = PolygonSoup::new(points, Polygons::from_triangles(&[[0, 1, 2], [3, 4, 5]]));
+/// let cleaned = clean(&soup, CleanOptions::default())?;
+/// assert_eq!(cleaned.value.vertex_count(), 4);
+/// assert_eq!(cleaned.report.count(Kind::FlippedFace), 1);
+/// assert_eq!(cleaned.maps.vertices.new_of(3), &[1]);
+/// # Ok::<(), meshwright::cleanup::CleanError>(())
+/// ```
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
-    let _ = (soup, options);
-    Ok(Outcome { value: Mesh::default(), report: Report::default(), maps: Maps::default() })
+    let Profile::Preserve = options.profile;
+    let mut control = options.control;
+    control.report("weld", 0.0)?;
+    let mut pool = Pool::new(soup, options.weld)?;
+    control.report("match edges", 0.4)?;
+    let mut matching = Matching::new(pool.positions.len(), &pool.polygons);
+    if matching.more.is_empty() && !matching.any_conflict {
+        // Most files need no more: try before working out what is wrong.
+        control.report("build", 0.5)?;
+        let indexed = pool.lend();
+        if let Some(value) = assemble(&indexed, &matching) {
+            pool.take_back(indexed);
+            let (report, maps) = pool.account();
+            return Ok(Outcome { value, report, maps });
+        }
+        pool.take_back(indexed);
+    }
+    control.report("drop duplicates", 0.5)?;
+    if drop_duplicates(&mut pool, &matching) {
+        matching = Matching::new(pool.positions.len(), &pool.polygons);
+    }
+    control.report("pair faces", 0.6)?;
+    let mates = make_manifold(&mut pool, &matching);
+    control.report("split vertices", 0.8)?;
+    let (split, vertices) = split::split(&mut pool, &mates);
+    pool.report.steps.push(StepSummary { step: Step::SplitVertices, changed: split, tolerance: None });
+    let maps = Maps { vertices, faces: pool.face_relation() };
+    let positions = std::mem::take(&mut pool.positions);
+    pool.record_merges(|v| maps.vertices.new_of(v as usize).first().map(|&n| positions[n as usize]));
+    pool.report.records.sort_by_key(|r| r.step);
+    control.report("build", 0.9)?;
+    pool.positions = positions;
+    let value = Mesh::build(&pool.lend()).map_err(CleanError::Bug)?;
+    Ok(Outcome { value, report: pool.report, maps })
 }
 
 /// Makes a valid vertex pool of any soup: drops what is not finite, out of range or short, welds, and repairs faces
-/// that name a vertex twice. How faces meet is left as it is.
+/// that name a vertex twice. How faces meet is left as it is. Linear in the corners.
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
-    let _ = (soup, weld);
-    Ok(Outcome { value: IndexedMesh::default(), report: Report::default(), maps: Maps::default() })
+    let mut pool = Pool::new(soup, weld)?;
+    let value = pool.lend();
+    pool.positions = value.positions().to_vec();
+    let (report, maps) = pool.account();
+    Ok(Outcome { value, report, maps })
+}
+
+/// Drops faces that are there already. Whether there were any.
+fn drop_duplicates(pool: &mut Pool<'_>, matching: &Matching) -> bool {
+    let duplicates = duplicate_faces(&pool.polygons, matching);
+    let mut gone = vec![false; pool.polygons.len()];
+    for &(face, _) in &duplicates {
+        gone[face as usize] = true;
+        record_face(pool, face, Step::DropDuplicates, Kind::DuplicateFace);
+    }
+    pool.report.steps.push(StepSummary { step: Step::DropDuplicates, changed: duplicates.len(), tolerance: None });
+    if !duplicates.is_empty() {
+        pool.remove_faces(&gone);
+    }
+    !duplicates.is_empty()
+}
+
+/// Records a change to a face, by the face of the soup it comes from.
+fn record_face(pool: &mut Pool<'_>, face: u32, step: Step, kind: Kind) {
+    let source = pool.face_source[face as usize];
+    let place = pool.middle(&pool.soup.polygons[source as usize]);
+    pool.record(step, kind, Element::Face(source), place);
+}
+
+/// Unifies windings, pairs the faces at edges with three or more, unifies again and cuts what cannot be oriented:
+/// returns for each corner its mate across the edge, wound alike, or [`NONE`].
+fn make_manifold(pool: &mut Pool<'_>, matching: &Matching) -> Vec<u32> {
+    let mut mates = matching.mates();
+    let mut flipped = vec![false; pool.polygons.len()];
+    let mut unify = |pool: &mut Pool<'_>, mates: &mut Vec<u32>| {
+        let found = orient(&pool.polygons, &FaceOf::new(&pool.polygons), mates);
+        for &c in &found.conflicts {
+            let m = std::mem::replace(&mut mates[c as usize], NONE);
+            mates[m as usize] = NONE;
+        }
+        let cut: Vec<[u32; 2]> = found.conflicts.iter().map(|&c| edge_of(pool, c as usize)).collect();
+        flip_faces(&mut pool.polygons, Some(mates), &found.flip);
+        flip_sources(pool, &found.flip);
+        flipped.iter_mut().zip(&found.flip).for_each(|(all, &now)| *all ^= now);
+        cut
+    };
+    let mut cut = Vec::new();
+    if matching.any_conflict {
+        cut = unify(pool, &mut mates);
+    }
+    let mut unpaired = 0;
+    if !matching.more.is_empty() {
+        // Flips have moved corners within their faces, so edges are matched again.
+        let matching = Matching::new(pool.positions.len(), &pool.polygons);
+        let face_of = FaceOf::new(&pool.polygons);
+        let left = pair::pair_faces(&pool.polygons, &pool.positions, &matching, &face_of, &mut mates);
+        for (e, left) in left {
+            if left > 0 || !is_undone_weld(pool, &matching, &mates, e as usize) {
+                let c = matching.edges[e as usize].first();
+                record_edge(pool, edge_of(pool, c), Step::PairFaces, Kind::NonManifoldEdge);
+            }
+            unpaired += left as usize;
+        }
+        cut.extend(unify(pool, &mut mates));
+    }
+    for face in (0..flipped.len()).filter(|&f| flipped[f]) {
+        record_face(pool, face as u32, Step::Unify, Kind::FlippedFace);
+    }
+    for edge in &cut {
+        record_edge(pool, *edge, Step::CutEdges, Kind::CutEdge);
+    }
+    let changed = flipped.iter().filter(|f| **f).count();
+    let steps = [(Step::Unify, changed), (Step::PairFaces, unpaired), (Step::CutEdges, cut.len())];
+    pool.report.steps.extend(steps.map(|(step, changed)| StepSummary { step, changed, tolerance: None }));
+    mates
+}
+
+/// The two vertices of a corner's half-edge.
+fn edge_of(pool: &Pool<'_>, corner: usize) -> [u32; 2] {
+    let face = pool.polygons.starts().partition_point(|&s| s <= corner) - 1;
+    [corner, next_corner(&pool.polygons, face as u32, corner)].map(|c| pool.polygons.corners()[c])
+}
+
+fn record_edge(pool: &mut Pool<'_>, [a, b]: [u32; 2], step: Step, kind: Kind) {
+    let [p, q] = [a, b].map(|v| pool.positions[v as usize]);
+    let [a, b] = [pool.named(a), pool.named(b)];
+    let place: DVec3 = p * 0.5 + q * 0.5;
+    pool.record(step, kind, Element::Edge([a.min(b), a.max(b)]), Some(place));
+}
+
+/// Moves the sources of corners along with the corners of reversed faces, which keep their first.
+fn flip_sources(pool: &mut Pool<'_>, flip: &[bool]) {
+    for face in (0..flip.len()).filter(|&f| flip[f]) {
+        let range = pool.polygons.starts()[face] + 1..pool.polygons.starts()[face + 1];
+        pool.corner_source[range].reverse();
+    }
+}
+
+/// Whether an edge with three or more faces is not one in the soup: each pair of its faces names vertices there that no
+/// other pair does, so only the weld brought them together.
+fn is_undone_weld(pool: &Pool<'_>, matching: &Matching, mates: &[u32], edge: usize) -> bool {
+    let mut named: Vec<(u32, u32)> = Vec::new();
+    for c in matching.uses(edge) {
+        let face = pool.polygons.starts().partition_point(|&s| s <= c) - 1;
+        let pair = (c as u32).min(mates[c]);
+        for c in [c, next_corner(&pool.polygons, face as u32, c)] {
+            named.push((pool.corner_source[c], pair));
+        }
+    }
+    named.sort_unstable();
+    named.dedup();
+    named.windows(2).all(|w| w[0].0 != w[1].0)
 }

@@ -12,12 +12,12 @@ pub use loops::NakedEdges;
 pub use mesh::MissingFace;
 pub use orient::{NotOrientable, unify_winding};
 
-pub(crate) use duplicates::Cycle;
+pub(crate) use duplicates::{Cycle, duplicate_faces};
 pub(crate) use fans::fan_roots;
-pub(crate) use orient::{Orientation, flip_faces, orient};
+pub(crate) use orient::{flip_faces, orient};
 pub(crate) use union_find::UnionFind;
 
-use crate::matching::{Matching, NONE};
+use crate::matching::Matching;
 use crate::{IndexedMesh, Polygons};
 
 /// How the faces of an [`IndexedMesh`] meet. Made by [`IndexedMesh::topology`]; every question may be asked of any
@@ -176,7 +176,7 @@ impl<'m> Topology<'m> {
         if !self.matching.any_conflict {
             return Ok(());
         }
-        let found = orient(self.mesh.polygons(), &self.face_of, &self.mates());
+        let found = orient(self.mesh.polygons(), &self.face_of, &self.matching.mates());
         if found.cycles.is_empty() { Ok(()) } else { Err(NotOrientable { cycles: found.cycles }) }
     }
 
@@ -221,20 +221,6 @@ impl<'m> Topology<'m> {
         }
         // Every join of two sets makes one piece fewer than there are vertices on the boundary.
         ends - sets.joins()
-    }
-
-    /// For each corner, the corner across its edge, or [`NONE`] where the edge has not exactly two faces.
-    pub(crate) fn mates(&self) -> Vec<u32> {
-        let mut mates = vec![NONE; self.matching.use_of.len()];
-        for (e, edge) in self.matching.edges.iter().enumerate() {
-            if let Some(second) = edge.second()
-                && !self.matching.is_nonmanifold(e)
-            {
-                mates[edge.first()] = second as u32;
-                mates[second] = edge.first() as u32;
-            }
-        }
-        mates
     }
 }
 

@@ -52,7 +52,7 @@ pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, No
     let mut polygons = mesh.polygons().clone();
     let mut report = Report::default();
     if topology.matching.any_conflict {
-        let found = orient(&polygons, &topology.face_of, &topology.mates());
+        let found = orient(&polygons, &topology.face_of, &topology.matching.mates());
         if !found.cycles.is_empty() {
             return Err(NotOrientable { cycles: found.cycles });
         }

@@ -1,0 +1,230 @@
+//! The first half of clean-up: from a soup to a valid vertex pool that remembers where everything came from.
+
+use super::polygons::{PolygonRepair, Repair};
+use super::weld::{propose_tolerance, weld};
+use super::{CleanError, Weld};
+use crate::matching::NONE;
+use crate::report::{Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
+use crate::{IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
+use glam::DVec3;
+
+/// A valid vertex pool on its way to a mesh, with its origins in the soup.
+pub(super) struct Pool<'s> {
+    pub(super) soup: &'s PolygonSoup,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) polygons: Polygons,
+    /// For each face the soup's face it was made of.
+    pub(super) face_source: Vec<u32>,
+    /// For each corner the soup's vertex it named.
+    pub(super) corner_source: Vec<u32>,
+    /// For each vertex the lowest of the soup's vertices in it: ascending.
+    pub(super) vertex_source: Vec<u32>,
+    /// For each of the soup's vertices the vertex it is in, or [`NONE`] if it was dropped.
+    pub(super) vertex_of: Vec<u32>,
+    pub(super) report: Report,
+    /// The tolerance of the weld; `None` if there was none.
+    pub(super) tolerance: Option<f64>,
+    /// Faces that were dropped or changed because they named a vertex twice.
+    pub(super) degenerate_faces: usize,
+}
+
+/// Why a face of the soup does not enter the pool.
+pub(super) fn invalid(soup: &PolygonSoup, face: &[u32]) -> Option<Kind> {
+    let at = |v: &u32| soup.positions.get(*v as usize);
+    if face.iter().any(|v| at(v).is_none()) {
+        Some(Kind::OutOfRangeFace)
+    } else if face.iter().any(|v| at(v).is_some_and(|p| !p.is_finite())) {
+        Some(Kind::NonFiniteFace)
+    } else if face.len() < 3 {
+        Some(Kind::ShortFace)
+    } else {
+        None
+    }
+}
+
+impl<'s> Pool<'s> {
+    /// Drops what is invalid, welds, repairs polygons.
+    pub(super) fn new(soup: &'s PolygonSoup, how: Weld) -> Result<Self, CleanError> {
+        let elements = soup.positions.len().max(soup.polygons.len()).max(soup.polygons.corners().len());
+        if elements > MAX_ELEMENTS {
+            return Err(CleanError::TooLarge { elements });
+        }
+        let tolerance = match how {
+            Weld::None => None,
+            Weld::Exact => Some(0.0),
+            Weld::Auto => Some(propose_tolerance(soup)),
+            Weld::Within(t) => Some(t),
+        };
+        let merged_into = weld(&soup.positions, tolerance)?;
+        let mut pool = Self {
+            soup,
+            positions: Vec::new(),
+            polygons: Polygons::with_capacity(soup.polygons.len(), soup.polygons.corners().len()),
+            face_source: Vec::with_capacity(soup.polygons.len()),
+            corner_source: Vec::with_capacity(soup.polygons.corners().len()),
+            vertex_source: Vec::new(),
+            vertex_of: merged_into,
+            report: Report::default(),
+            tolerance,
+            degenerate_faces: 0,
+        };
+        let dropped = pool.number_vertices();
+        let merged = soup.positions.len() - dropped - pool.positions.len();
+        let repairs = pool.take_faces(dropped);
+        let step = |step, changed, tolerance| StepSummary { step, changed, tolerance };
+        if pool.tolerance.is_some() {
+            pool.report.steps.push(step(Step::Weld, merged, pool.tolerance));
+        }
+        pool.report.steps.push(step(Step::RepairPolygons, repairs.len(), None));
+        pool.report.records.extend(repairs);
+        Ok(pool)
+    }
+
+    /// Numbers the kept vertices in the soup's order; returns how many are not finite.
+    fn number_vertices(&mut self) -> usize {
+        let mut dropped = 0;
+        for v in 0..self.vertex_of.len() {
+            match self.vertex_of[v] {
+                NONE => {
+                    dropped += 1;
+                    self.record(Step::DropInvalid, Kind::NonFiniteVertex, Element::Vertex(v as u32), None);
+                }
+                kept if kept as usize == v => {
+                    self.vertex_of[v] = self.positions.len() as u32;
+                    self.positions.push(self.soup.positions[v]);
+                    self.vertex_source.push(v as u32);
+                }
+                // The kept vertex is lower, so it has its number.
+                kept => self.vertex_of[v] = self.vertex_of[kept as usize],
+            }
+        }
+        dropped
+    }
+
+    /// Takes over the valid faces and repairs them; returns the records of repairs.
+    fn take_faces(&mut self, dropped_vertices: usize) -> Vec<Record> {
+        let soup = self.soup;
+        let mut repairs = Vec::new();
+        let mut repair = PolygonRepair::default();
+        let (mut welded, mut pieces) = (Vec::new(), Polygons::new());
+        let mut dropped = dropped_vertices;
+        for (f, face) in soup.polygons.iter().enumerate() {
+            let element = Element::Face(f as u32);
+            if let Some(kind) = invalid(soup, face) {
+                dropped += 1;
+                self.record(Step::DropInvalid, kind, element, self.middle(face));
+                continue;
+            }
+            welded.clear();
+            welded.extend(face.iter().map(|&v| self.vertex_of[v as usize]));
+            pieces.clear();
+            let kind = match repair.repair(&welded, |v| self.positions[v as usize], &mut pieces) {
+                Repair::Intact => None,
+                Repair::Shortened => Some(Kind::RepeatedCorner),
+                Repair::Divided => Some(Kind::PinchedFace),
+                Repair::Gone => Some(Kind::DegenerateFace),
+            };
+            if let Some(kind) = kind {
+                self.degenerate_faces += 1;
+                repairs.push(Record { step: Step::RepairPolygons, kind, element, place: self.middle(face) });
+            }
+            for piece in pieces.iter() {
+                self.polygons.push(piece.iter().map(|&i| welded[i as usize]));
+                self.corner_source.extend(piece.iter().map(|&i| face[i as usize]));
+                self.face_source.push(f as u32);
+            }
+        }
+        self.report.steps.push(StepSummary { step: Step::DropInvalid, changed: dropped, tolerance: None });
+        repairs
+    }
+
+    pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {
+        self.report.records.push(Record { step, kind, element, place });
+    }
+
+    /// The mean of a soup face's finite corners.
+    pub(super) fn middle(&self, face: &[u32]) -> Option<DVec3> {
+        let finite = || face.iter().filter_map(|&v| self.soup.positions.get(v as usize)).filter(|p| p.is_finite());
+        let count = finite().count() as f64;
+        (count > 0.0).then(|| finite().map(|p| p / count).sum())
+    }
+
+    /// The soup's vertex for a vertex of the pool, as records name it.
+    pub(super) fn named(&self, v: u32) -> u32 {
+        self.vertex_source[v as usize]
+    }
+
+    /// Removes faces.
+    pub(super) fn remove_faces(&mut self, gone: &[bool]) {
+        let kept = || (0..gone.len()).filter(|&f| !gone[f]);
+        let mut polygons = Polygons::with_capacity(gone.len(), self.corner_source.len());
+        let mut sources = Vec::with_capacity(self.corner_source.len());
+        for f in kept() {
+            polygons.push(self.polygons[f].iter().copied());
+            sources.extend_from_slice(&self.corner_source[self.polygons.starts()[f]..self.polygons.starts()[f + 1]]);
+        }
+        self.face_source = kept().map(|f| self.face_source[f]).collect();
+        self.polygons = polygons;
+        self.corner_source = sources;
+    }
+
+    /// The relation of the soup's faces to the pool's.
+    pub(super) fn face_relation(&self) -> Relation {
+        let pairs = self.face_source.iter().zip(0..).map(|(&old, new)| (old, new));
+        Relation::from_pairs(self.soup.polygons.len(), self.face_source.len(), pairs)
+    }
+
+    /// Records the merges that moved a corner, in front of all records of later steps. `settled` gives the soup's
+    /// vertices and the positions they ended at.
+    pub(super) fn record_merges(&mut self, ended: impl Fn(u32) -> Option<DVec3>) {
+        if !self.tolerance.is_some_and(|t| t > 0.0) {
+            return;
+        }
+        let soup = self.soup;
+        let vertices = soup.positions.iter().zip(0u32..).filter(|(p, _)| p.is_finite());
+        let moved = vertices.filter(|&(&p, v)| ended(v).is_some_and(|q| q != p));
+        let merges = moved.map(|(&p, v)| Record {
+            step: Step::Weld,
+            kind: Kind::MergedVertex,
+            element: Element::Vertex(v),
+            place: Some(p),
+        });
+        let before = self.report.records.partition_point(|r| r.step < Step::Weld);
+        self.report.records.splice(before..before, merges.collect::<Vec<_>>());
+    }
+
+    /// Given normals of the kept vertices, if the soup has one finite normal for each.
+    pub(super) fn normals(&self) -> Option<Vec<DVec3>> {
+        let given = &self.soup.vertex_normals;
+        let usable = given.len() == self.soup.positions.len() && !given.is_empty();
+        usable.then(|| {
+            let finite = |v: &u32| Some(given[*v as usize]).filter(|n| n.is_finite()).unwrap_or(DVec3::ZERO);
+            self.vertex_source.iter().map(finite).collect()
+        })
+    }
+
+    /// The pool as it stands, its positions and faces moved out.
+    pub(super) fn lend(&mut self) -> IndexedMesh {
+        let (positions, polygons) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.polygons));
+        IndexedMesh::trusted(positions, polygons, self.normals())
+    }
+
+    /// Takes positions and faces back.
+    pub(super) fn take_back(&mut self, indexed: IndexedMesh) {
+        (self.positions, self.polygons, _) = indexed.into_parts();
+    }
+
+    /// The account of a pool whose vertices stand as they were welded.
+    pub(super) fn account(mut self) -> (Report, Maps) {
+        let maps = Maps {
+            vertices: Relation::from_map(
+                &self.vertex_of.iter().map(|&v| Some(v).filter(|&v| v != NONE)).collect::<Vec<_>>(),
+                self.vertex_source.len(),
+            ),
+            faces: self.face_relation(),
+        };
+        let (positions, of) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.vertex_of));
+        self.record_merges(|v| positions.get(of[v as usize] as usize).copied());
+        (self.report, maps)
+    }
+}

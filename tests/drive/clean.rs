@@ -1,0 +1,140 @@
+//! From bytes to a soup, through the whole ladder: the body of the property test, the fuzz target and the regressions.
+
+use arbitrary::{Arbitrary, Result, Unstructured};
+use meshwright::cleanup::{CleanOptions, Weld, clean, index};
+use meshwright::glam::DVec3;
+use meshwright::{IndexedMesh, Kind, Mesh, PolygonSoup, Polygons};
+
+/// A soup small enough for every way of going wrong to come up. Prints as Rust, to be pasted as a regression.
+#[derive(Arbitrary, Clone, Debug)]
+pub(crate) struct Soup {
+    /// Coordinates on a small lattice, so that positions and planes coincide; some are not finite.
+    pub(crate) points: Vec<[i8; 3]>,
+    /// Indices, taken modulo a little more than the number of points.
+    pub(crate) faces: Vec<Vec<u8>>,
+    /// Of what kind the weld is.
+    pub(crate) weld: u8,
+}
+
+impl Soup {
+    pub(crate) fn build(&self) -> (PolygonSoup, Weld) {
+        let coordinate = |c: i8| match c {
+            i8::MIN => f64::NAN,
+            i8::MAX => f64::INFINITY,
+            -64 => -0.0,
+            c => f64::from(c % 4) * 0.5,
+        };
+        let points: Vec<DVec3> = self.points.iter().map(|p| DVec3::from(p.map(coordinate))).collect();
+        let range = points.len() as u32 + 1;
+        let index = |i: &u8| match u32::from(*i) {
+            255 => PolygonSoup::NO_VERTEX,
+            // Rarely out of range.
+            i if i >= 250 => i % range,
+            i => i % points.len().max(1) as u32,
+        };
+        let polygons: Polygons = self.faces.iter().map(|f| f.iter().map(index).collect::<Vec<_>>()).collect();
+        let weld = [Weld::Exact, Weld::None, Weld::Within(0.6), Weld::Auto][usize::from(self.weld % 4)];
+        (PolygonSoup::new(points, polygons), weld)
+    }
+}
+
+/// One run from raw bytes.
+pub(crate) fn drive(bytes: &[u8]) {
+    if let Ok(soup) = soup(bytes) {
+        check(&soup);
+    }
+}
+
+fn soup(bytes: &[u8]) -> Result<Soup> {
+    let mut u = Unstructured::new(bytes);
+    let weld = u.arbitrary()?;
+    let count = u.int_in_range(0..=12)?;
+    let points = (0..count).map(|_| u.arbitrary()).collect::<Result<_>>()?;
+    let mut faces = Vec::new();
+    while !u.is_empty() && faces.len() < 24 {
+        let degree = [3, 3, 3, 3, 4, 4, 5, 6, 7, 9, 2, 1, 0][usize::from(u.arbitrary::<u8>()? % 13)];
+        faces.push((0..degree).map(|_| u.arbitrary()).collect::<Result<_>>()?);
+    }
+    Ok(Soup { points, faces, weld })
+}
+
+/// Cleaning any soup gives a valid mesh and an honest account.
+pub(crate) fn check(case: &Soup) {
+    let (soup, weld) = case.build();
+    let cleaned = clean(&soup, CleanOptions { weld, ..Default::default() }).expect("a soup is never refused");
+    let mesh = &cleaned.value;
+    assert_eq!(mesh.violations(), []);
+    assert_eq!(mesh.validate(), Ok(()));
+
+    // The ladder holds both ways.
+    let pool = mesh.to_indexed();
+    assert_eq!(Mesh::build(&pool).expect("a mesh has a pool that builds").to_indexed(), pool);
+
+    // Maps fit both ends, and every old face that is gone has a record that says why.
+    let (old, new) = (soup.polygons.len(), mesh.face_count());
+    assert_eq!((cleaned.maps.faces.old_len(), cleaned.maps.faces.new_len()), (old, new));
+    let vertices = &cleaned.maps.vertices;
+    assert_eq!((vertices.old_len(), vertices.new_len()), (soup.positions.len(), mesh.vertex_count()));
+    let report = &cleaned.report;
+    let dropped = [
+        Kind::NonFiniteFace,
+        Kind::OutOfRangeFace,
+        Kind::ShortFace,
+        Kind::DegenerateFace,
+        Kind::DuplicateFace,
+    ];
+    for f in 0..old {
+        let element = meshwright::Element::Face(f as u32);
+        let gone = report.records.iter().any(|r| r.element == element && dropped.contains(&r.kind));
+        assert!(gone || !cleaned.maps.faces.new_of(f).is_empty(), "face {f} vanished");
+    }
+    for f in 0..new {
+        assert_eq!(cleaned.maps.faces.old_of(f).len(), 1, "face {f} comes from one face");
+    }
+    for v in 0..soup.positions.len() {
+        assert_eq!(vertices.new_of(v).is_empty(), !soup.positions[v].is_finite(), "vertex {v}");
+        if !matches!(weld, Weld::Within(_)) {
+            for &n in vertices.new_of(v) {
+                assert_eq!(pool.positions()[n as usize], soup.positions[v], "nothing moves in an exact weld");
+            }
+        }
+    }
+    // Records come in the order of steps.
+    assert!(report.records.is_sorted_by_key(|r| r.step));
+
+    // New boundary only at recorded edges.
+    let indexed = index(&soup, weld).expect("a soup is never refused").value;
+    if report.count(Kind::NonManifoldEdge) + report.count(Kind::CutEdge) + report.count(Kind::DuplicateFace) == 0
+        && indexed.topology().nonmanifold_edges().next().is_none()
+    {
+        assert_eq!(mesh.boundary_halfedges().count(), indexed.topology().boundary_edges().count());
+    }
+    // What is a manifold already comes out as it is, with nothing to tell.
+    if let Ok(direct) = Mesh::build(&indexed) {
+        assert_eq!(direct.to_indexed(), pool);
+        let later = |k: &Kind| *k > Kind::PinchedFace;
+        assert!(report.records.iter().all(|r| !later(&r.kind)), "{report:?}");
+    }
+
+    // A second pass changes nothing.
+    let again = PolygonSoup::from(pool.clone());
+    let again = clean(&again, CleanOptions { weld: Weld::None, ..Default::default() }).expect("never refused");
+    assert_eq!(again.report.records, []);
+    assert_eq!(again.value.to_indexed(), pool);
+    assert!(again.maps.vertices.is_identity() && again.maps.faces.is_identity());
+
+    ladder(&soup);
+}
+
+/// The rungs without clean-up: refusals are exact.
+fn ladder(soup: &PolygonSoup) {
+    let Ok(pool) = IndexedMesh::try_from(soup.clone()) else { return };
+    let Ok(mut mesh) = Mesh::build(&pool) else { return };
+    assert_eq!(mesh.violations(), []);
+    assert_eq!(mesh.to_indexed(), pool);
+    mesh.reverse();
+    assert_eq!(mesh.violations(), []);
+    assert_eq!(mesh.to_indexed(), pool.clone().reversed());
+    mesh.reverse();
+    assert_eq!(mesh.to_indexed(), pool);
+}
