@@ -1,5 +1,8 @@
 //! One [`Violation`] per numbered invariant of the [design page](crate::design), and the two checks.
 
+#[cfg(test)]
+mod tests;
+
 use crate::matching::NONE;
 use crate::topology::Cycle;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, Mesh, VertexKey};

@@ -1,0 +1,106 @@
+//! Our side of the comparison with C++ peers; `benches/peers/run.sh` runs both in turns.
+//!
+//! `cargo bench --bench peers -- --write DIR` writes the two shapes; `-- --time FILE [--repeats N]` times one of them and
+//! prints a line per operation: name, operation, value, unit. A file holds, little-endian: `u64` vertices, `u64`
+//! triangles, three `f64` a vertex, three `u32` a triangle.
+
+#[path = "../tests/shapes/mod.rs"]
+mod shapes;
+
+use meshwright::glam::DVec3;
+use meshwright::{IndexedMesh, Mesh};
+use std::error::Error;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+use std::{env, fs};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args: Vec<String> = env::args().collect();
+    let value = |flag: &str| args.iter().position(|a| a == flag).and_then(|i| args.get(i + 1));
+    if let Some(dir) = value("--write") {
+        fs::create_dir_all(dir)?;
+        fs::write(format!("{dir}/sphere1m.raw"), to_raw(&shapes::icosphere(8)))?;
+        fs::write(format!("{dir}/grid2m.raw"), to_raw(&shapes::grid(1000)))?;
+        return Ok(());
+    }
+    let repeats = value("--repeats").map_or(Ok(5), |r| r.parse())?;
+    match value("--time") {
+        Some(file) => time(&from_raw(&fs::read(file)?)?, repeats),
+        None => time(&shapes::icosphere(6), repeats),
+    }
+    Ok(())
+}
+
+fn to_raw(pool: &IndexedMesh) -> Vec<u8> {
+    let mut raw = Vec::new();
+    raw.extend((pool.vertex_count() as u64).to_le_bytes());
+    raw.extend((pool.face_count() as u64).to_le_bytes());
+    raw.extend(pool.positions().iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
+    raw.extend(pool.polygons().corners().iter().flat_map(|c| c.to_le_bytes()));
+    raw
+}
+
+fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn Error>> {
+    let word = |i: usize| raw[8 * i..8 * i + 8].try_into().map(u64::from_le_bytes);
+    let (vertices, triangles) = (word(0)? as usize, word(1)? as usize);
+    let (points, indices) = raw[16..].split_at(24 * vertices);
+    let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
+    let points = points.chunks_exact(24).map(|p| DVec3::new(number(&p[..8]), number(&p[8..16]), number(&p[16..])));
+    let index = |b: &[u8]| u32::from_le_bytes(b.try_into().expect("four bytes"));
+    let corners = indices.chunks_exact(12).map(|t| [index(&t[..4]), index(&t[4..8]), index(&t[8..])]);
+    let corners: Vec<[u32; 3]> = corners.take(triangles).collect();
+    Ok(IndexedMesh::from_triangles(points.collect(), &corners)?)
+}
+
+fn best<T>(repeats: usize, mut run: impl FnMut() -> T) -> (Duration, T) {
+    let mut last = None;
+    let mut best = Duration::MAX;
+    for _ in 0..repeats.max(1) {
+        drop(last.take());
+        let start = Instant::now();
+        last = Some(black_box(run()));
+        best = best.min(start.elapsed());
+    }
+    (best, last.expect("at least one repeat"))
+}
+
+/// Peak resident memory of this process so far, in bytes; 0 where the system does not tell.
+fn peak_rss() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<u64>().ok()).map_or(0, |kib| kib * 1024)
+}
+
+fn time(pool: &IndexedMesh, repeats: usize) {
+    let (vertices, faces) = (pool.vertex_count() as f64, pool.face_count() as f64);
+    let print = |op: &str, value: f64, unit: &str| println!("meshwright\t{op}\t{value:.3}\t{unit}");
+    let nanos = |d: Duration| d.as_nanos() as f64;
+
+    let before = peak_rss();
+    let mesh = Mesh::build(pool).expect("a manifold");
+    print("peak", (peak_rss() - before) as f64 / faces, "bytes/face");
+    print("memory", mesh.heap_bytes() as f64 / faces, "bytes/face");
+    drop(mesh);
+
+    let (build, mesh) = best(repeats, || Mesh::build(pool).expect("a manifold"));
+    print("build", nanos(build) / faces, "ns/face");
+    let (ring, sum) = best(repeats, || {
+        let mut sum = DVec3::ZERO;
+        for v in mesh.vertices() {
+            for n in mesh.neighbors(v) {
+                sum += mesh.position(n);
+            }
+        }
+        sum
+    });
+    print("ring", nanos(ring) / vertices, "ns/vertex");
+    print("ring_checksum", sum.element_sum(), "length");
+    let (validate, verdict) = best(repeats, || mesh.validate());
+    verdict.expect("valid");
+    print("validate", nanos(validate) / faces, "ns/face");
+    let (boundary, count) = best(repeats, || mesh.boundary_halfedges().count());
+    print("boundary", nanos(boundary) / mesh.edge_count() as f64, "ns/edge");
+    print("boundary_edges", count as f64, "edges");
+    let (back, pool) = best(repeats, || mesh.to_indexed());
+    print("to_indexed", nanos(back) / pool.face_count() as f64, "ns/face");
+}
