@@ -1,12 +1,9 @@
 //! The second rung: a valid vertex pool.
 
 use crate::geometry::normals::{self, NormalWeight};
-use crate::{PolygonSoup, Polygons};
+use crate::{MAX_ELEMENTS, PolygonSoup, Polygons};
 use glam::DVec3;
 use std::fmt;
-
-/// The most vertices, faces or corners a mesh can have: half-edges are numbered in 32 bits.
-pub const MAX_ELEMENTS: usize = (1 << 31) - 2;
 
 /// A valid vertex pool: finite positions, and faces of three or more distinct vertices that all exist.
 ///

@@ -3,6 +3,9 @@
 use glam::DVec3;
 use std::ops::Range;
 
+/// The most vertices, faces or corners a mesh can have: half-edges are numbered in 32 bits.
+pub const MAX_ELEMENTS: usize = (1 << 31) - 2;
+
 /// Faces of any degree, stored as one flat index array.
 ///
 /// Says nothing about the indices: they may be out of range or repeat. Indices are zero-based.

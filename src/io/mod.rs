@@ -1,7 +1,8 @@
 //! Files to and from [`PolygonSoup`](crate::PolygonSoup): OBJ, STL, PLY and OFF, under [`Limits`].
 //!
 //! Readers take bytes and promise nothing about what they return except that the file said it; what they skipped or
-//! tolerated stands in [`Loaded::notes`] with its line or byte. Errors blame the source, the file, the caller or a limit.
+//! tolerated stands in [`Loaded::notes`] with its line or byte. Errors blame the source, the file, the caller or a
+//! limit. OBJ, PLY and OFF keep coordinates exactly.
 
 mod error;
 mod limits;
@@ -9,6 +10,188 @@ mod obj;
 mod off;
 mod ply;
 mod stl;
+mod text;
 
-pub use error::{Note, Place, ReadError, WriteError};
+pub use error::{Lost, Malformed, Note, NoteKind, Place, ReadError, WriteError};
 pub use limits::Limits;
+pub use obj::{read_obj, write_obj};
+pub use off::{read_off, write_off};
+pub use ply::{read_ply, write_ply, write_ply_ascii, write_ply_big_endian};
+pub use stl::{read_stl, write_stl, write_stl_ascii};
+
+use crate::PolygonSoup;
+use std::io::Write;
+use std::path::Path;
+
+/// What a file held.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loaded {
+    /// Its vertices and faces, in the file's numbering.
+    pub soup: PolygonSoup,
+    /// What was tolerated or left out, in the order of places.
+    pub notes: Vec<Note>,
+}
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// STL, ASCII or binary.
+    Stl,
+    /// PLY, ASCII or binary.
+    Ply,
+    /// OFF and its variants.
+    Off,
+}
+
+/// How numbers are written, where a format offers a choice: STL and PLY. The default is the format's compact binary form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Encoding {
+    /// Binary, little-endian.
+    #[default]
+    Binary,
+    /// Binary, big-endian: PLY only; others are written as [`Binary`](Self::Binary).
+    BigEndian,
+    /// Text.
+    Ascii,
+}
+
+impl Format {
+    /// By the name's extension, in any case.
+    pub fn from_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        Some(match extension.as_str() {
+            "obj" => Self::Obj,
+            "stl" => Self::Stl,
+            "ply" => Self::Ply,
+            "off" | "coff" | "noff" | "cnoff" => Self::Off,
+            _ => return None,
+        })
+    }
+
+    /// By the content, as far as it tells.
+    pub fn detect(bytes: &[u8]) -> Option<Self> {
+        const BEGINNING: usize = 4096;
+        let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+        let text = &text[..text.len().min(BEGINNING)];
+        let mut words = text::words(text);
+        let first = words.next().unwrap_or_default();
+        if first == b"ply" {
+            Some(Self::Ply)
+        } else if first.windows(3).take(4).any(|w| w == b"OFF") {
+            Some(Self::Off)
+        } else if stl::is_binary(bytes) || first.eq_ignore_ascii_case(b"solid") {
+            Some(Self::Stl)
+        } else {
+            let is_statement = |l: &[u8]| {
+                let keyword = text::words(l).next().unwrap_or_default();
+                [&b"v"[..], b"vt", b"vn", b"f", b"o", b"g", b"usemtl", b"mtllib"].contains(&keyword)
+            };
+            text::Lines::new(text).any(|(_, l)| is_statement(l)).then_some(Self::Obj)
+        }
+    }
+}
+
+/// Reads a file's bytes in a given format.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, ReadError> {
+    match format {
+        Format::Obj => read_obj(bytes, limits),
+        Format::Stl => read_stl(bytes, limits),
+        Format::Ply => read_ply(bytes, limits),
+        Format::Off => read_off(bytes, limits),
+    }
+}
+
+/// Reads a file, by its name's extension, or by its content if the extension tells nothing.
+///
+/// # Errors
+/// [`ReadError`].
+///
+/// # Examples
+/// ```no_run
+/// use meshwright::io::{Limits, read_file};
+/// let loaded = read_file("bracket.stl", &Limits::default())?;
+/// for note in &loaded.notes {
+///     eprintln!("{note}");
+/// }
+/// # Ok::<(), meshwright::io::ReadError>(())
+/// ```
+pub fn read_file(path: impl AsRef<Path>, limits: &Limits) -> Result<Loaded, ReadError> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path)?;
+    let format = Format::from_path(path).or_else(|| Format::detect(&bytes)).ok_or(ReadError::UnknownFormat)?;
+    read(&bytes, format, limits)
+}
+
+/// Writes a soup in a given format; returns what the format could not carry. The same soup gives the same bytes. Wants a
+/// buffered sink.
+///
+/// # Errors
+/// [`WriteError`].
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, glam::DVec3, io::{self, Encoding, Format}};
+/// let soup = PolygonSoup::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], Polygons::from_triangles(&[[0, 1, 2]]));
+/// let mut file = Vec::new();
+/// let lost = io::write(&soup, Format::Ply, Encoding::Ascii, &mut file)?;
+/// assert!(lost.is_empty());
+/// # Ok::<(), io::WriteError>(())
+/// ```
+pub fn write(
+    soup: &PolygonSoup,
+    format: Format,
+    encoding: Encoding,
+    sink: &mut impl Write,
+) -> Result<Vec<Lost>, WriteError> {
+    match (format, encoding) {
+        (Format::Obj, _) => write_obj(soup, sink),
+        (Format::Off, _) => write_off(soup, sink),
+        (Format::Stl, Encoding::Ascii) => write_stl_ascii(soup, sink),
+        (Format::Stl, _) => write_stl(soup, sink),
+        (Format::Ply, Encoding::Ascii) => write_ply_ascii(soup, sink),
+        (Format::Ply, Encoding::BigEndian) => write_ply_big_endian(soup, sink),
+        (Format::Ply, Encoding::Binary) => write_ply(soup, sink),
+    }
+}
+
+/// Refuses what a file could not say.
+fn check_writable(soup: &PolygonSoup) -> Result<(), WriteError> {
+    if let Some(vertex) = soup.positions.iter().position(|p| !p.is_finite()) {
+        return Err(WriteError::NonFinite { vertex });
+    }
+    let count = soup.positions.len();
+    for (face, corners) in soup.polygons.iter().enumerate() {
+        if corners.len() < 3 {
+            return Err(WriteError::ShortFace { face });
+        }
+        if corners.iter().any(|&v| v as usize >= count) {
+            return Err(WriteError::IndexOutOfRange { face });
+        }
+    }
+    Ok(())
+}
+
+/// Data that stand one for each vertex, if there are any.
+fn per_vertex<'s, T>(data: &'s [T], soup: &PolygonSoup) -> Option<&'s [T]> {
+    (!data.is_empty() && data.len() == soup.positions.len()).then_some(data)
+}
+
+/// What the soup has beyond positions and faces, less what was carried.
+fn lost(soup: &PolygonSoup, carried: &[Lost]) -> Vec<Lost> {
+    let has = [
+        (Lost::Normals, !soup.vertex_normals.is_empty() || soup.corner_normals.is_some()),
+        (Lost::Colors, !soup.vertex_colors.is_empty()),
+        (Lost::TextureCoordinates, soup.corner_uvs.is_some()),
+        (Lost::Groups, !soup.groups.is_empty()),
+    ];
+    has.into_iter().filter(|(kind, present)| *present && !carried.contains(kind)).map(|h| h.0).collect()
+}

@@ -1,0 +1,135 @@
+//! Writing PLY.
+
+use super::super::error::{Lost, WriteError};
+use super::super::text::Number;
+use super::super::{check_writable, lost, per_vertex};
+use crate::PolygonSoup;
+use std::io::Write;
+
+/// Writes a little-endian PLY file: positions and normals in double precision, colours as bytes if they were bytes.
+///
+/// # Errors
+/// [`WriteError`] when the soup could not be read back, or the sink fails.
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, glam::DVec3, io::{Limits, read_ply, write_ply}};
+/// let soup = PolygonSoup::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], Polygons::from_triangles(&[[0, 1, 2]]));
+/// let mut file = Vec::new();
+/// write_ply(&soup, &mut file)?;
+/// assert_eq!(read_ply(&file, &Limits::default())?.soup, soup);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_ply(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
+    write(soup, "binary_little_endian", sink, |sink, v| match v {
+        Value::Double(x) => sink.write_all(&x.to_le_bytes()),
+        Value::Float(x) => sink.write_all(&x.to_le_bytes()),
+        Value::Byte(x) => sink.write_all(&[x]),
+        Value::Index(x) => sink.write_all(&x.to_le_bytes()),
+        Value::EndOfElement => Ok(()),
+    })
+}
+
+/// Writes a big-endian PLY file; otherwise as [`write_ply`].
+///
+/// # Errors
+/// [`WriteError`] when the soup could not be read back, or the sink fails.
+pub fn write_ply_big_endian(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
+    write(soup, "binary_big_endian", sink, |sink, v| match v {
+        Value::Double(x) => sink.write_all(&x.to_be_bytes()),
+        Value::Float(x) => sink.write_all(&x.to_be_bytes()),
+        Value::Byte(x) => sink.write_all(&[x]),
+        Value::Index(x) => sink.write_all(&x.to_be_bytes()),
+        Value::EndOfElement => Ok(()),
+    })
+}
+
+/// Writes an ASCII PLY file; otherwise as [`write_ply`]. Coordinates keep all their digits.
+///
+/// # Errors
+/// [`WriteError`] when the soup could not be read back, or the sink fails.
+pub fn write_ply_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
+    let mut separator = "";
+    write(soup, "ascii", sink, |sink, v| {
+        let before = std::mem::replace(&mut separator, " ");
+        match v {
+            Value::Double(x) => write!(sink, "{before}{}", Number(x)),
+            Value::Float(x) => write!(sink, "{before}{x}"),
+            Value::Byte(x) => write!(sink, "{before}{x}"),
+            Value::Index(x) => write!(sink, "{before}{x}"),
+            Value::EndOfElement => {
+                separator = "";
+                writeln!(sink)
+            }
+        }
+    })
+}
+
+enum Value {
+    Double(f64),
+    Float(f32),
+    Byte(u8),
+    Index(u32),
+    EndOfElement,
+}
+
+fn write<W: Write>(
+    soup: &PolygonSoup,
+    encoding: &str,
+    sink: &mut W,
+    mut put: impl FnMut(&mut W, Value) -> std::io::Result<()>,
+) -> Result<Vec<Lost>, WriteError> {
+    check_writable(soup)?;
+    let normals = per_vertex(&soup.vertex_normals, soup);
+    let colors = per_vertex(&soup.vertex_colors, soup);
+    let byte = |c: f32| (c * 255.0).round() as u8;
+    let bytes = colors.is_some_and(|c| c.iter().flatten().all(|&c| f32::from(byte(c)) / 255.0 == c));
+    // Texture coordinates per vertex, where corners refer to them so.
+    let corners = soup.polygons.corners();
+    let uvs = soup.corner_uvs.as_ref().filter(|d| d.values.len() == soup.positions.len() && d.indices == corners);
+
+    writeln!(sink, "ply\nformat {encoding} 1.0\nelement vertex {}", soup.positions.len())?;
+    let mut properties = |names: &[&str], kind: &str| {
+        names.iter().try_for_each(|name| writeln!(sink, "property {kind} {name}"))
+    };
+    properties(&["x", "y", "z"], "double")?;
+    if normals.is_some() {
+        properties(&["nx", "ny", "nz"], "double")?;
+    }
+    if colors.is_some() {
+        properties(&["red", "green", "blue", "alpha"], if bytes { "uchar" } else { "float" })?;
+    }
+    if uvs.is_some() {
+        properties(&["s", "t"], "double")?;
+    }
+    // A byte counts the corners of nearly every file.
+    let most = soup.polygons.iter().map(<[u32]>::len).max().unwrap_or(0);
+    let is_small = most <= 255;
+    let count = if is_small { "uchar" } else { "uint" };
+    writeln!(sink, "element face {}\nproperty list {count} uint vertex_indices\nend_header", soup.polygons.len())?;
+
+    for (i, p) in soup.positions.iter().enumerate() {
+        for x in p.to_array().into_iter().chain(normals.into_iter().flat_map(|n| n[i].to_array())) {
+            put(sink, Value::Double(x))?;
+        }
+        for c in colors.into_iter().flat_map(|c| c[i]) {
+            put(sink, if bytes { Value::Byte(byte(c)) } else { Value::Float(c) })?;
+        }
+        for x in uvs.into_iter().flat_map(|d| d.values[i]) {
+            put(sink, Value::Double(x))?;
+        }
+        put(sink, Value::EndOfElement)?;
+    }
+    for face in soup.polygons.iter() {
+        put(sink, if is_small { Value::Byte(face.len() as u8) } else { Value::Index(face.len() as u32) })?;
+        for &v in face {
+            put(sink, Value::Index(v))?;
+        }
+        put(sink, Value::EndOfElement)?;
+    }
+    let carried: &[Lost] = match uvs {
+        Some(_) => &[Lost::Normals, Lost::Colors, Lost::TextureCoordinates],
+        None => &[Lost::Normals, Lost::Colors],
+    };
+    Ok(lost(soup, carried))
+}
