@@ -1,5 +1,7 @@
 //! The corpus of real meshes, where the environment names one.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use meshwright::PolygonSoup;
 use meshwright::io::{Limits, ReadError, read_file};
 use std::collections::HashMap;

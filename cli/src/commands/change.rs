@@ -1,0 +1,59 @@
+//! Commands that write a mesh much as it was read.
+
+use super::in_file;
+use super::look::fields;
+use crate::args::{Convert, Unify};
+use crate::session::{Answer, Failure, Phase, Session};
+use crate::{import, output};
+use meshwright::{Mesh, unify_winding};
+use serde_json::{Map, json};
+
+pub(super) fn convert(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
+    import_change_write(session, args, |_| {})
+}
+
+pub(super) fn flip(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
+    import_change_write(session, args, Mesh::reverse)
+}
+
+fn import_change_write(
+    session: &mut Session,
+    args: &Convert,
+    change: impl FnOnce(&mut Mesh),
+) -> Result<Answer, Failure> {
+    let (mut mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
+    session.timed(Phase::Run, || change(&mut mesh));
+    let soup = mesh.to_indexed().into();
+    let lost = output::write_mesh(session, &args.output, &soup)?;
+    let json = json!({
+        "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "lost": lost, "import": import,
+    });
+    let destination = args.output.output.path.display();
+    let text = format!("wrote {destination}: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
+    Ok(Answer { json: fields(json), text, is_no: false })
+}
+
+pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failure> {
+    let (loaded, outcome) = import::indexed(session, &args.file, args.weld.weld)?;
+    let faces = &outcome.maps.faces;
+    let unified = session.timed(Phase::Run, || unify_winding(&outcome.value.topology()));
+    let unified = unified.map_err(|error| {
+        let cycle = |c: &Vec<u32>| c.iter().map(|&f| in_file(faces, f)).collect::<Vec<_>>();
+        let cycles: Vec<_> = error.cycles.iter().map(cycle).collect();
+        let json = json!({ "orientable": false, "cycles": cycles });
+        Failure::Refused { message: error.to_string(), json: fields(json) }
+    })?;
+    let flipped = unified.report.records.iter().filter_map(|r| match r.element {
+        meshwright::Element::Face(f) => Some(in_file(faces, f)),
+        _ => None,
+    });
+    let mut flipped: Vec<u32> = flipped.collect();
+    flipped.dedup();
+    let lost = output::write_mesh(session, &args.output, &unified.value.into())?;
+    let mut json = Map::from_iter([("orientable".to_owned(), json!(true))]);
+    json.insert("flipped".to_owned(), json!(flipped));
+    json.insert("lost".to_owned(), json!(lost));
+    json.insert("import".to_owned(), import::import_json(&loaded, &outcome.report));
+    let text = format!("wrote {}: {} faces flipped\n", args.output.output.path.display(), flipped.len());
+    Ok(Answer { json, text, is_no: false })
+}

@@ -1,0 +1,28 @@
+//! The commands, each from its arguments to its answer.
+
+mod change;
+mod clean;
+mod look;
+
+use crate::args::Command;
+use crate::session::{Answer, Failure, Session};
+use meshwright::Relation;
+
+/// Runs one command.
+pub(crate) fn run(command: &Command, session: &mut Session) -> Result<Answer, Failure> {
+    match command {
+        Command::Inspect(args) => look::inspect(session, args),
+        Command::IsClosed(args) => look::is_closed(session, args),
+        Command::NakedEdges(args) => look::naked_edges(session, args),
+        Command::Volume(args) => look::volume(session, args),
+        Command::Clean(args) => clean::clean(session, args),
+        Command::Convert(args) => change::convert(session, args),
+        Command::Flip(args) => change::flip(session, args),
+        Command::Unify(args) => change::unify(session, args),
+    }
+}
+
+/// The file's number of an element: the lowest of those it was made from.
+fn in_file(relation: &Relation, new: u32) -> u32 {
+    relation.old_of(new as usize).first().copied().unwrap_or(new)
+}
