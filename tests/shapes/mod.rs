@@ -209,3 +209,4 @@ impl Noise {
         (self.bits() % u64::from(n.max(1))) as u32
     }
 }
+
