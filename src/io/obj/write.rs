@@ -77,7 +77,7 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
 /// The index from 1 of a corner's value, if it has one.
 fn index<T>(data: &CornerData<T>, corner: usize) -> Option<u32> {
     let i = *data.indices.get(corner)?;
-    ((i as usize) < data.values.len()).then_some(i + 1)
+    ((i as usize) < data.values.len()).then(|| i + 1)
 }
 
 /// A name that cannot end its line, begin a comment or continue on the next line.

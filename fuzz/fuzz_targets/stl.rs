@@ -1,0 +1,7 @@
+//! Bytes through the stl reader and every writer.
+#![no_main]
+
+#[path = "../../tests/drive/io.rs"]
+mod drive;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| drive::stl(bytes));

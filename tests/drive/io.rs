@@ -1,0 +1,68 @@
+//! From bytes through a reader, and what it read through every writer and back: the body of tests and fuzz targets.
+
+#![allow(dead_code, reason = "each target takes one")]
+
+use meshwright::PolygonSoup;
+use meshwright::io::{self, Encoding, Format, Limits, Lost};
+
+/// Small enough that a fuzzer finds whatever breaks them.
+const LIMITS: Limits = Limits { vertices: 4096, faces: 4096, corners: 16384 };
+
+pub(crate) fn obj(bytes: &[u8]) {
+    drive(bytes, Format::Obj);
+}
+
+pub(crate) fn stl(bytes: &[u8]) {
+    drive(bytes, Format::Stl);
+}
+
+pub(crate) fn ply(bytes: &[u8]) {
+    drive(bytes, Format::Ply);
+}
+
+pub(crate) fn off(bytes: &[u8]) {
+    drive(bytes, Format::Off);
+}
+
+fn drive(bytes: &[u8], format: Format) {
+    let _ = Format::detect(bytes);
+    let Ok(loaded) = io::read(bytes, format, &LIMITS) else { return };
+    let soup = loaded.soup;
+    let corners = soup.polygons.corners().len();
+    assert!(soup.positions.len() as u64 <= LIMITS.vertices && soup.polygons.len() as u64 <= LIMITS.faces);
+    assert!(soup.vertex_normals.is_empty() || soup.vertex_normals.len() == soup.positions.len());
+    assert!(soup.vertex_colors.is_empty() || soup.vertex_colors.len() == soup.positions.len());
+    assert!(soup.corner_uvs.as_ref().is_none_or(|d| d.indices.len() == corners));
+    assert!(soup.corner_normals.as_ref().is_none_or(|d| d.indices.len() == corners));
+    assert!(soup.groups.iter().all(|g| g.faces.end <= soup.polygons.len()));
+    for format in [Format::Obj, Format::Ply, Format::Off, Format::Stl] {
+        for encoding in [Encoding::Binary, Encoding::BigEndian, Encoding::Ascii] {
+            round_trip(&soup, format, encoding);
+        }
+    }
+}
+
+/// What is written reads back equal, but for what the writer says is lost.
+pub(crate) fn round_trip(soup: &PolygonSoup, format: Format, encoding: Encoding) {
+    let mut file = Vec::new();
+    let Ok(lost) = io::write(soup, format, encoding, &mut file) else { return };
+    let mut again = Vec::new();
+    io::write(soup, format, encoding, &mut again).expect("what was written once is written again");
+    assert_eq!(file, again, "the same soup gives the same bytes");
+    let empty = soup.positions.is_empty() && format == Format::Obj;
+    let back = match io::read(&file, format, &Limits::default()) {
+        Ok(back) => back.soup,
+        Err(_) if empty => return,
+        Err(error) => panic!("{format:?} {encoding:?}: {error}\n{}", String::from_utf8_lossy(&file)),
+    };
+    if lost.contains(&Lost::SharedVertices) {
+        let triangles: usize = soup.polygons.iter().map(|f| f.len() - 2).sum();
+        assert_eq!(back.polygons.len(), triangles);
+        return;
+    }
+    let bits = |s: &PolygonSoup| s.positions.iter().flat_map(|p| p.to_array()).map(f64::to_bits).collect::<Vec<_>>();
+    if !lost.contains(&Lost::IsolatedVertices) {
+        assert_eq!(bits(&back), bits(soup), "{format:?} {encoding:?} keeps coordinates exactly");
+        assert_eq!(back.polygons, soup.polygons, "{format:?} {encoding:?} keeps faces");
+    }
+}
