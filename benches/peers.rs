@@ -1,6 +1,7 @@
 //! Our side of the comparison with C++ peers; `benches/peers/run.sh` runs both in turns.
 //!
-//! `cargo bench --bench peers -- --write DIR` writes the two shapes; `-- --time FILE [--repeats N]` times one of them and
+//! `cargo bench --bench peers -- --write DIR` writes the shapes: a sphere in the order of subdivision, the same
+//! shuffled, and a grid; `-- --time FILE [--repeats N]` times one of them and
 //! prints a line per operation: name, operation, value, unit. A file holds, little-endian: `u64` vertices, `u64`
 //! triangles, three `f64` a vertex, three `u32` a triangle.
 
@@ -19,7 +20,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let value = |flag: &str| args.iter().position(|a| a == flag).and_then(|i| args.get(i + 1));
     if let Some(dir) = value("--write") {
         fs::create_dir_all(dir)?;
-        fs::write(format!("{dir}/sphere1m.raw"), to_raw(&shapes::icosphere(8)))?;
+        let sphere = shapes::icosphere(8);
+        fs::write(format!("{dir}/scattered1m.raw"), to_raw(&shapes::shuffled(&sphere, 3)))?;
+        fs::write(format!("{dir}/sphere1m.raw"), to_raw(&sphere))?;
         fs::write(format!("{dir}/grid2m.raw"), to_raw(&shapes::grid(1000)))?;
         return Ok(());
     }
@@ -64,10 +67,10 @@ fn best<T>(repeats: usize, mut run: impl FnMut() -> T) -> (Duration, T) {
     (best, last.expect("at least one repeat"))
 }
 
-/// Peak resident memory of this process so far, in bytes; 0 where the system does not tell.
-fn peak_rss() -> u64 {
+/// Resident memory of this process in bytes, by the name the system gives it; 0 where it does not tell.
+fn resident(name: &str) -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let line = status.lines().find_map(|l| l.strip_prefix(name));
     line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<u64>().ok()).map_or(0, |kib| kib * 1024)
 }
 
@@ -76,9 +79,10 @@ fn time(pool: &IndexedMesh, repeats: usize) {
     let print = |op: &str, value: f64, unit: &str| println!("meshwright\t{op}\t{value:.3}\t{unit}");
     let nanos = |d: Duration| d.as_nanos() as f64;
 
-    let before = peak_rss();
+    let (peak, now) = (resident("VmHWM:"), resident("VmRSS:"));
     let mesh = Mesh::build(pool).expect("a manifold");
-    print("peak", (peak_rss() - before) as f64 / faces, "bytes/face");
+    print("peak", (resident("VmHWM:") - peak) as f64 / faces, "bytes/face");
+    print("resident", (resident("VmRSS:") - now) as f64 / faces, "bytes/face");
     print("memory", mesh.heap_bytes() as f64 / faces, "bytes/face");
     drop(mesh);
 

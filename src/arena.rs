@@ -78,11 +78,15 @@ impl<K: Key> Arena<K> {
 
     /// Whether versions, slot map and ranks agree.
     pub(crate) fn is_sound(&self) -> bool {
-        let occupied = self.versions.iter().skip(1).filter(|&&v| v != 0).count();
-        self.versions.first() == Some(&0)
+        let mut occupied = 0;
+        let known = self.live().all(|s| {
+            occupied += 1;
+            self.slots.contains_key(self.key(s))
+        });
+        known
             && occupied == self.slots.len()
+            && self.versions.first() == Some(&0)
             && (self.ranks.is_empty() || self.ranks.len() == self.versions.len())
-            && self.live().all(|s| self.slots.contains_key(self.key(s)))
     }
 
     /// Heap bytes held: 8 per slot in slotmap, 4 in the version column, 4 more once ranks are kept.

@@ -276,30 +276,39 @@ impl Mesh {
 
     /// Whether all invariants hold, as fast as that can be told.
     fn is_sound(&self) -> bool {
-        self.storage_violations().is_empty() && self.halfedges_are_sound() && self.faces_are_sound() && self.vertices_are_sound()
+        self.storage_violations().is_empty()
+            && self.open_if_halfedges_are_sound().is_some_and(|open| self.faces_are_sound(open))
+            && self.vertices_are_sound()
     }
 
-    /// M2 to M6 and M11, in one sweep of the half-edges.
-    fn halfedges_are_sound(&self) -> bool {
-        self.edges.live().all(|e| {
+    /// M3 to M6 and M11, in one sweep of the half-edges; the number of those without a face if they hold. Whether their
+    /// faces and origins are live (M2) shows later: the loops of live faces and the fans of live vertices must hold them
+    /// all.
+    fn open_if_halfedges_are_sound(&self) -> Option<usize> {
+        let mut open = 0;
+        for e in self.edges.live() {
             let h = 2 * e as usize;
-            let side = |h: usize| {
+            let (left, right) = (self.face[h], self.face[h + 1]);
+            let side = |h: usize, face: u32| {
                 let next = self.next[h];
                 let n = next as usize;
                 self.edges.is_live(next >> 1)
                     && self.prev[n] as usize == h
                     && self.origin[n] == self.origin[h ^ 1]
-                    && self.face[n] == self.face[h]
-                    && (self.face[h] == NONE || self.faces.is_live(self.face[h]))
-                    && self.vertices.is_live(self.origin[h])
+                    && self.face[n] == face
             };
             // `next` maps live half-edges to live ones and `prev` leads back, so both are permutations.
-            self.origin[h] != self.origin[h + 1] && (self.face[h] & self.face[h + 1]) != NONE && side(h) && side(h + 1)
-        })
+            let is_edge = self.origin[h] != self.origin[h + 1] && (left & right) != NONE;
+            if !(is_edge && side(h, left) && side(h + 1, right)) {
+                return None;
+            }
+            open += usize::from(left == NONE) + usize::from(right == NONE);
+        }
+        Some(open)
     }
 
     /// M7 to M10: each face has a loop of three or more, and the loops hold all half-edges that have a face.
-    fn faces_are_sound(&self) -> bool {
+    fn faces_are_sound(&self, open: usize) -> bool {
         let mut stamp: Vec<u32> = Vec::new();
         let mut on_loops = 0;
         for f in self.faces.live() {
@@ -320,18 +329,14 @@ impl Mesh {
             stamp.resize(self.vertices.slot_count(), 0);
             for h in self.loop_slots(first) {
                 on_loops += 1;
-                if std::mem::replace(&mut stamp[self.origin[h as usize] as usize], f) == f {
+                // An origin beyond the vertices is no live one.
+                let Some(last) = stamp.get_mut(self.origin[h as usize] as usize) else { return false };
+                if std::mem::replace(last, f) == f {
                     return false;
                 }
             }
         }
-        let open = self.face.iter().skip(2).zip(self.live_flags()).filter(|&(&f, live)| live && f == NONE).count();
         on_loops + open == 2 * self.edge_count()
-    }
-
-    /// For each half-edge from slot 2 on, whether its edge is live.
-    fn live_flags(&self) -> impl Iterator<Item = bool> + '_ {
-        (2..self.face.len() as u32).map(|h| self.edges.is_live(h >> 1))
     }
 
     /// M12 to M18: each vertex has one fan, the fans hold all half-edges, and nothing is there twice.
@@ -357,8 +362,11 @@ impl Mesh {
                     return false;
                 }
                 let to = self.origin[h as usize ^ 1];
-                if to > v && std::mem::replace(&mut stamp[to as usize], v) == v {
-                    return false;
+                if to > v {
+                    let Some(last) = stamp.get_mut(to as usize) else { return false };
+                    if std::mem::replace(last, v) == v {
+                        return false;
+                    }
                 }
                 valence += 1;
                 h = self.next[h as usize ^ 1];

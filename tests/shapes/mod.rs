@@ -189,6 +189,22 @@ pub(crate) fn some_reversed(of: &IndexedMesh, one_in: u32, seed: u64) -> Indexed
     IndexedMesh::new(of.positions().to_vec(), polygons).expect("a valid vertex pool")
 }
 
+/// The same surface with vertices and faces in random order: nothing lies near its neighbours in memory.
+pub(crate) fn shuffled(of: &IndexedMesh, seed: u64) -> IndexedMesh {
+    let mut noise = Noise(seed);
+    let mut order = |n: usize| {
+        let mut order: Vec<u32> = (0..n as u32).collect();
+        (1..n).rev().for_each(|i| order.swap(i, noise.below(i as u32 + 1) as usize));
+        order
+    };
+    let (vertices, faces) = (order(of.vertex_count()), order(of.face_count()));
+    let mut number = vec![0; vertices.len()];
+    (0..).zip(&vertices).for_each(|(new, &old)| number[old as usize] = new);
+    let polygons = faces.iter().map(|&f| of.polygons()[f as usize].iter().map(|&v| number[v as usize]).collect::<Vec<_>>());
+    let positions = vertices.iter().map(|&v| of.positions()[v as usize]).collect();
+    IndexedMesh::new(positions, polygons.collect()).expect("a valid vertex pool")
+}
+
 /// Numbers that look random and are the same on every run (SplitMix64, Steele, Lea and Flood 2014).
 pub(crate) struct Noise(pub(crate) u64);
 
