@@ -48,7 +48,8 @@ fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn Error>> {
     let (vertices, triangles) = (word(0)? as usize, word(1)? as usize);
     let (points, indices) = raw[16..].split_at(24 * vertices);
     let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
-    let points = points.chunks_exact(24).map(|p| DVec3::new(number(&p[..8]), number(&p[8..16]), number(&p[16..])));
+    let points =
+        points.chunks_exact(24).map(|p| DVec3::new(number(&p[..8]), number(&p[8..16]), number(&p[16..])));
     let index = |b: &[u8]| u32::from_le_bytes(b.try_into().expect("four bytes"));
     let corners = indices.chunks_exact(12).map(|t| [index(&t[..4]), index(&t[4..8]), index(&t[8..])]);
     let corners: Vec<[u32; 3]> = corners.take(triangles).collect();

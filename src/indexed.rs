@@ -148,7 +148,11 @@ impl IndexedMesh {
             let bad = normals.iter().enumerate().filter(|(_, n)| !n.is_finite());
             bad.map(|(i, _)| IndexedDefect::NonFiniteNormal { vertex: i as u32 }).collect()
         };
-        if defects.is_empty() { Ok(Self { normals: Some(normals), ..self }) } else { Err(IndexedError { defects }) }
+        if defects.is_empty() {
+            Ok(Self { normals: Some(normals), ..self })
+        } else {
+            Err(IndexedError { defects })
+        }
     }
 
     /// A pool whose producer has already seen to every promise.
@@ -273,7 +277,9 @@ fn defects(positions: &[DVec3], polygons: &Polygons) -> Vec<IndexedDefect> {
             let corner = corner as u32;
             match named_by.get_mut(index as usize) {
                 None => found.push(IndexedDefect::IndexOutOfRange { face, corner, index }),
-                Some(by) if *by == face => found.push(IndexedDefect::RepeatedCorner { face, corner, vertex: index }),
+                Some(by) if *by == face => {
+                    found.push(IndexedDefect::RepeatedCorner { face, corner, vertex: index })
+                }
                 Some(by) => *by = face,
             }
         }

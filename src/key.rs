@@ -31,7 +31,13 @@ pub struct HalfedgeKey {
 
 impl fmt::Debug for HalfedgeKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "HalfedgeKey({}{}v{})", self.index >> 1, ["a", "b"][(self.index & 1) as usize], self.version)
+        write!(
+            f,
+            "HalfedgeKey({}{}v{})",
+            self.index >> 1,
+            ["a", "b"][(self.index & 1) as usize],
+            self.version
+        )
     }
 }
 

@@ -18,7 +18,7 @@
 //!
 //! # Features
 //! `io` (default): readers and writers for OBJ, STL, PLY and OFF. `serde`: accounts, facts and soups serialise.
-//! `rayon`: reserved for bulk work in parallel; results are the same with and without.
+//! `rayon`: bulk work on several threads; results are the same with and without.
 
 mod arena;
 mod build;
@@ -34,6 +34,7 @@ pub mod io;
 mod key;
 mod matching;
 mod mesh;
+mod parallel;
 mod report;
 mod soup;
 mod topology;
@@ -53,3 +54,8 @@ pub use report::{Element, Kind, MapMismatch, Maps, Outcome, Record, Relation, Re
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
 pub use topology::{EdgeRef, MissingFace, NakedEdges, NotOrientable, Topology, unify_winding};
 pub use validate::Violation;
+
+/// The README's program runs.
+#[cfg(all(doctest, feature = "io"))]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -200,7 +200,10 @@ mod tests {
             }
             assert_eq!(m.is_nonmanifold(e), uses.len() > 2);
             if uses.len() > 1 {
-                assert_eq!(m.edges[e].is_conflict(), polygons.corners()[uses[0]] == polygons.corners()[uses[1]]);
+                assert_eq!(
+                    m.edges[e].is_conflict(),
+                    polygons.corners()[uses[0]] == polygons.corners()[uses[1]]
+                );
             }
         }
         ours.sort();

@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 
 /// An oriented 2-manifold with boundary, of faces of any degree, stored as half-edges behind checked keys.
 ///
-/// Every `Mesh` satisfies the invariants M1..M19 of the [design page](crate::design); no public call can break them.
+/// Every `Mesh` satisfies the invariants M1..M18 of the [design page](crate::design); no public call can break them.
 /// An edge is a pair of half-edges, [`twin`](Self::twin)s of each other; the half-edges of a face run around it
 /// counter-clockwise seen from outside; a half-edge without a face is a *boundary half-edge* and lies on a boundary
 /// loop.
@@ -281,7 +281,8 @@ impl Mesh {
 
     /// Bytes of heap memory the mesh holds. O(1).
     pub fn heap_bytes(&self) -> usize {
-        let links = [&self.next, &self.prev, &self.origin, &self.face, &self.vertex_halfedge, &self.face_halfedge];
+        let links =
+            [&self.next, &self.prev, &self.origin, &self.face, &self.vertex_halfedge, &self.face_halfedge];
         let vectors = self.positions.capacity() + self.normals.as_ref().map_or(0, Vec::capacity);
         self.vertices.bytes()
             + self.edges.bytes()

@@ -321,7 +321,11 @@ impl Relation {
     }
 
     /// Any pairs `(old, new)`, in any order; repeats count once, pairs out of range not at all. O(n log n).
-    pub fn from_pairs(old_count: usize, new_count: usize, pairs: impl IntoIterator<Item = (u32, u32)>) -> Self {
+    pub fn from_pairs(
+        old_count: usize,
+        new_count: usize,
+        pairs: impl IntoIterator<Item = (u32, u32)>,
+    ) -> Self {
         let mut pairs: Vec<_> = pairs
             .into_iter()
             .filter(|&(old, new)| (old as usize) < old_count && (new as usize) < new_count)

@@ -49,7 +49,10 @@ impl Polygons {
 
     /// Triangles, in order.
     pub fn from_triangles(triangles: &[[u32; 3]]) -> Self {
-        Self { starts: (0..=triangles.len()).map(|i| 3 * i).collect(), corners: triangles.as_flattened().to_vec() }
+        Self {
+            starts: (0..=triangles.len()).map(|i| 3 * i).collect(),
+            corners: triangles.as_flattened().to_vec(),
+        }
     }
 
     /// Removes all faces and keeps the room.

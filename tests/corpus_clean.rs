@@ -52,8 +52,10 @@ fn cleaning_every_readable_file_gives_a_valid_mesh_with_an_honest_account() {
 
         // No face is dropped that need not be.
         let dropped = (0..soup.polygons.len()).filter(|&f| outcome.maps.faces.new_of(f).is_empty()).count();
-        let may: i64 =
-            ["degenerate_faces", "duplicate_faces", "short_faces", "out_of_range_faces"].iter().map(|d| row.count(d)).sum();
+        let may: i64 = ["degenerate_faces", "duplicate_faces", "short_faces", "out_of_range_faces"]
+            .iter()
+            .map(|d| row.count(d))
+            .sum();
         let non_finite = outcome.report.count(Kind::NonFiniteFace) as i64;
         assert!(dropped as i64 <= may + non_finite, "{}: {dropped} faces dropped, {may} may be", row.path);
 
@@ -91,8 +93,9 @@ fn no_new_boundary(soup: &PolygonSoup, outcome: &Outcome<Mesh>, path: &str) {
     }
     // A boundary edge that was parted in the middle has one end that came from nothing.
     let pool = outcome.value.to_indexed();
-    let from_nothing: BTreeSet<u32> =
-        (0..pool.vertex_count() as u32).filter(|&v| outcome.maps.vertices.old_of(v as usize).is_empty()).collect();
+    let from_nothing: BTreeSet<u32> = (0..pool.vertex_count() as u32)
+        .filter(|&v| outcome.maps.vertices.old_of(v as usize).is_empty())
+        .collect();
     for edge in pool.topology().boundary_edges() {
         let [a, b] = edge.vertices();
         if from_nothing.contains(&a) || from_nothing.contains(&b) {

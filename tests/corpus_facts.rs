@@ -22,7 +22,8 @@ fn inspect_agrees_with_the_manifest_on_every_readable_file() {
         };
         let facts = inspect(&soup, Weld::Exact).expect("always answers");
         compared += 1;
-        let degrees = facts.face_degrees.iter().map(|(d, n)| format!("{d}:{n}")).collect::<Vec<_>>().join(",");
+        let degrees =
+            facts.face_degrees.iter().map(|(d, n)| format!("{d}:{n}")).collect::<Vec<_>>().join(",");
         let yes = |b: bool| if b { "yes" } else { "no" }.to_owned();
         let has_faces = row.get("faces_in_topology") != "0";
         let fields = [
@@ -53,7 +54,9 @@ fn inspect_agrees_with_the_manifest_on_every_readable_file() {
         exceptions.compare(&row.path, "closed", &yes(facts.closed), theirs);
         let near = match (facts.volume, row.number("volume")) {
             (None, None) => true,
-            (Some(ours), Some(theirs)) => (ours - theirs).abs() <= 1e-6 * theirs.abs().max(ours.abs()) + 1e-300,
+            (Some(ours), Some(theirs)) => {
+                (ours - theirs).abs() <= 1e-6 * theirs.abs().max(ours.abs()) + 1e-300
+            }
             _ => false,
         };
         let ours = facts.volume.map_or(String::new(), |v| format!("{v:.9}"));

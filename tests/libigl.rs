@@ -43,7 +43,11 @@ fn compare(igl: &mut Igl, name: &str, pool: &IndexedMesh) {
     // libigl counts the vertices up to the highest that a face names.
     let top = pool.polygons().corners().iter().max().map_or(0, |&v| v + 1);
     let unused = isolated.range(..top).count() as f64;
-    assert_eq!(topology.euler_characteristic() as f64 + unused, theirs.number("euler"), "{name}: Euler characteristic");
+    assert_eq!(
+        topology.euler_characteristic() as f64 + unused,
+        theirs.number("euler"),
+        "{name}: Euler characteristic"
+    );
 
     let scale = pool.bounds().map_or(1.0, |b| (b.max - b.min).length());
     let offset = pool.bounds().map_or(0.0, |b| b.center().length());
@@ -57,7 +61,9 @@ fn compare(igl: &mut Igl, name: &str, pool: &IndexedMesh) {
     for (weight, column) in [(NormalWeight::Area, "normals_area"), (NormalWeight::Angle, "normals_angle")] {
         let theirs = theirs.numbers(column);
         let certainty = certainty(pool, weight);
-        for ((v, ours), theirs) in pool.vertex_normals(weight).into_iter().enumerate().zip(theirs.chunks_exact(3)) {
+        for ((v, ours), theirs) in
+            pool.vertex_normals(weight).into_iter().enumerate().zip(theirs.chunks_exact(3))
+        {
             let theirs = DVec3::from_slice(theirs);
             // Where faces cancel, or have hardly any area, the direction is noise.
             if theirs.is_finite() && certainty[v] > 1e-6 {
@@ -87,7 +93,8 @@ fn certainty(pool: &IndexedMesh, weight: NormalWeight) -> Vec<f64> {
             let w = if weight == NormalWeight::Area { cross.length() } else { (p - q).angle_between(r - q) };
             sums[v as usize] += cross.normalize_or_zero() * w;
             weights[v as usize] += w;
-            worst[v as usize] = worst[v as usize].min(cross.length() / (longest * longest).max(f64::MIN_POSITIVE));
+            worst[v as usize] =
+                worst[v as usize].min(cross.length() / (longest * longest).max(f64::MIN_POSITIVE));
         }
     }
     (0..sums.len()).map(|v| worst[v] * sums[v].length() / f64::max(weights[v], f64::MIN_POSITIVE)).collect()
@@ -117,7 +124,10 @@ fn libigl_agrees_on_generated_shapes() {
         ("cube", shapes::fanned(&shapes::cube())),
         ("torus", shapes::fanned(&shapes::torus(12, 7))),
         ("grid", shapes::grid(12)),
-        ("two cubes apart", shapes::fanned(&shapes::both(&shapes::cube(), &shapes::cube_at(DVec3::splat(3.0))))),
+        (
+            "two cubes apart",
+            shapes::fanned(&shapes::both(&shapes::cube(), &shapes::cube_at(DVec3::splat(3.0)))),
+        ),
         ("fins", shapes::fins()),
         ("bow tie", shapes::bow_tie()),
         ("moebius", shapes::fanned(&shapes::moebius(9))),

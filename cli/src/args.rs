@@ -160,5 +160,9 @@ fn weld(word: &str) -> Result<Weld, String> {
 }
 
 fn weld_or_auto(word: &str) -> Result<Weld, String> {
-    if word == "auto" { Ok(Weld::Auto) } else { weld(word).map_err(|_| "none, exact, auto or a number".to_owned()) }
+    if word == "auto" {
+        Ok(Weld::Auto)
+    } else {
+        weld(word).map_err(|_| "none, exact, auto or a number".to_owned())
+    }
 }

@@ -23,10 +23,13 @@ pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure
 pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(Mesh, Value), Failure> {
     let loaded = load(session, path)?;
     if strict {
-        return strict_mesh(session, &loaded).map(|mesh| (mesh, json!({ "notes": loaded.notes, "counts": {} })));
+        return strict_mesh(session, &loaded)
+            .map(|mesh| (mesh, json!({ "notes": loaded.notes, "counts": {} })));
     }
     let outcome = session.timed(Phase::Build, || {
-        progress::shown(|hook| clean(&loaded.soup, CleanOptions { control: Control::new(hook), ..Default::default() }))
+        progress::shown(|hook| {
+            clean(&loaded.soup, CleanOptions { control: Control::new(hook), ..Default::default() })
+        })
     })?;
     say_changes(session, &outcome.report);
     Ok((outcome.value, import_json(&loaded, &outcome.report)))
@@ -48,9 +51,9 @@ fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> 
         let message = format!("not a valid vertex pool: {} at {} and {more} more", first.kind, first.element);
         return refuse(message, json!(indexed.report.records));
     }
-    session.timed(Phase::Build, || Mesh::build(&indexed.value)).or_else(|error| {
-        refuse(error.to_string(), json!(error.defects))
-    })
+    session
+        .timed(Phase::Build, || Mesh::build(&indexed.value))
+        .or_else(|error| refuse(error.to_string(), json!(error.defects)))
 }
 
 /// Reads a file and welds it, whatever its state.

@@ -15,6 +15,10 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let mut session = Session::new(cli.json);
+    if let Some(threads) = cli.threads {
+        // The pool is not running yet, so this cannot fail; and results do not depend on it.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+    }
     let result = commands::run(&cli.command, &mut session);
     session.finish(result)
 }

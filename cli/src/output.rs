@@ -10,7 +10,11 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Writes a mesh; returns, and says on standard error, what the format could not carry.
-pub(crate) fn write_mesh(session: &mut Session, output: &Output, soup: &PolygonSoup) -> Result<Vec<Lost>, Failure> {
+pub(crate) fn write_mesh(
+    session: &mut Session,
+    output: &Output,
+    soup: &PolygonSoup,
+) -> Result<Vec<Lost>, Failure> {
     let destination = &output.output;
     let encoding = if output.ascii { Encoding::Ascii } else { Encoding::Binary };
     let lost = session.timed(Phase::Write, || {

@@ -2,9 +2,10 @@
 
 use super::pool::Pool;
 use super::{CleanError, Weld};
-use crate::geometry::measure::{Aabb, measures};
-use crate::report::Kind;
 use crate::PolygonSoup;
+use crate::geometry::measure::{Aabb, measures};
+use crate::parallel::both;
+use crate::report::Kind;
 use std::collections::BTreeMap;
 
 /// What [`inspect`] finds: the facts of a soup after welding, nothing repaired.
@@ -104,23 +105,28 @@ pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
 
     let indexed = pool.lend();
     let topology = indexed.topology();
+    let ((components, pieces), pinched) =
+        both(|| (topology.components().1, topology.boundary_pieces()), || topology.pinched_vertices().len());
+    let ((duplicates, measures), orientable) = both(
+        || (topology.duplicate_faces().len(), measures(indexed.positions(), indexed.polygons())),
+        || topology.orientable().is_ok(),
+    );
     facts.used_vertices = indexed.vertex_count() - topology.isolated_vertices().len();
-    facts.components = topology.components().1;
+    facts.components = components;
     facts.boundary_edges = topology.boundary_edges().count();
-    facts.boundary_loops = topology.boundary_pieces();
+    facts.boundary_loops = pieces;
     facts.nonmanifold_edges = topology.nonmanifold_edges().count();
-    facts.nonmanifold_vertices = topology.pinched_vertices().len();
+    facts.nonmanifold_vertices = pinched;
     facts.conflicting_edges = topology.conflicting_edges().count();
-    facts.duplicate_faces = topology.duplicate_faces().len();
+    facts.duplicate_faces = duplicates;
     facts.closed = topology.is_closed();
-    facts.manifold = facts.nonmanifold_edges == 0 && facts.nonmanifold_vertices == 0;
+    facts.manifold = facts.nonmanifold_edges == 0 && pinched == 0;
     facts.oriented = facts.conflicting_edges == 0;
-    facts.orientable = topology.orientable().is_ok();
+    facts.orientable = orientable;
     facts.euler_characteristic =
         facts.used_vertices as i64 - topology.edge_count() as i64 + indexed.face_count() as i64;
-    let one_surface = facts.closed && facts.manifold && facts.orientable && facts.components == 1;
+    let one_surface = facts.closed && facts.manifold && orientable && components == 1;
     facts.genus = one_surface.then(|| ((2 - facts.euler_characteristic) / 2).unsigned_abs());
-    let measures = measures(indexed.positions(), indexed.polygons());
     facts.area = measures.area;
     facts.volume = (facts.closed && facts.oriented).then_some(measures.volume);
     Ok(facts)

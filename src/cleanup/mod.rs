@@ -164,7 +164,11 @@ fn drop_duplicates(pool: &mut Pool<'_>, matching: &Matching) -> bool {
         gone[face as usize] = true;
         record_face(pool, face, Step::DropDuplicates, Kind::DuplicateFace);
     }
-    pool.report.steps.push(StepSummary { step: Step::DropDuplicates, changed: duplicates.len(), tolerance: None });
+    pool.report.steps.push(StepSummary {
+        step: Step::DropDuplicates,
+        changed: duplicates.len(),
+        tolerance: None,
+    });
     if !duplicates.is_empty() {
         pool.remove_faces(&gone);
     }

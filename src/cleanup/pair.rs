@@ -9,12 +9,12 @@
 //! A whole patch may have to be reversed for a pairing; a union-find with parities keeps the choices consistent. What
 //! is left over stays boundary.
 
+use crate::Polygons;
 use crate::geometry::measure::Aabb;
 use crate::geometry::normals::double_area_vector;
 use crate::geometry::{direction, unit_scale};
 use crate::matching::{Matching, NONE};
 use crate::topology::{FaceOf, UnionFind, next_corner};
-use crate::Polygons;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

@@ -100,7 +100,13 @@ impl PolygonRepair {
 
     /// Divides a face that touches itself: at the vertices where it does if all parts then turn the same way (a figure
     /// of several lobes), into triangles if not (a keyhole around a hole).
-    fn divide(&mut self, face: &[u32], kept: &[u32], at: impl Fn(u32) -> DVec3, out: &mut Polygons) -> Repair {
+    fn divide(
+        &mut self,
+        face: &[u32],
+        kept: &[u32],
+        at: impl Fn(u32) -> DVec3,
+        out: &mut Polygons,
+    ) -> Repair {
         let vertex = |i: u32| face[i as usize];
         let scale = unit_scale(kept.iter().map(|&i| at(vertex(i))));
         let area = |part: &[u32]| double_area_vector(part.iter().map(|&i| at(vertex(i)) * scale));

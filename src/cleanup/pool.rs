@@ -144,7 +144,8 @@ impl<'s> Pool<'s> {
 
     /// The mean of a soup face's finite corners.
     pub(super) fn middle(&self, face: &[u32]) -> Option<DVec3> {
-        let finite = || face.iter().filter_map(|&v| self.soup.positions.get(v as usize)).filter(|p| p.is_finite());
+        let finite =
+            || face.iter().filter_map(|&v| self.soup.positions.get(v as usize)).filter(|p| p.is_finite());
         let count = finite().count() as f64;
         (count > 0.0).then(|| finite().map(|p| p / count).sum())
     }
@@ -161,7 +162,9 @@ impl<'s> Pool<'s> {
         let mut sources = Vec::with_capacity(self.corner_source.len());
         for f in kept() {
             polygons.push(self.polygons[f].iter().copied());
-            sources.extend_from_slice(&self.corner_source[self.polygons.starts()[f]..self.polygons.starts()[f + 1]]);
+            sources.extend_from_slice(
+                &self.corner_source[self.polygons.starts()[f]..self.polygons.starts()[f + 1]],
+            );
         }
         self.face_source = kept().map(|f| self.face_source[f]).collect();
         self.polygons = polygons;

@@ -1,8 +1,8 @@
 //! Which vertices become one: at equal coordinates, or within a tolerance.
 
 use super::CleanError;
-use crate::matching::NONE;
 use crate::PolygonSoup;
+use crate::matching::NONE;
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::collections::HashMap;
@@ -165,7 +165,9 @@ mod tests {
         let mut kept: Vec<usize> = Vec::new();
         let mut merged = Vec::new();
         for (i, &p) in positions.iter().enumerate() {
-            let near = |&&j: &&usize| if tolerance == 0.0 { positions[j] == p } else { is_near(p, positions[j], tolerance) };
+            let near = |&&j: &&usize| {
+                if tolerance == 0.0 { positions[j] == p } else { is_near(p, positions[j], tolerance) }
+            };
             match kept.iter().find(near) {
                 Some(&j) => merged.push(j as u32),
                 None => {
@@ -184,7 +186,10 @@ mod tests {
             (-3i32..3).prop_map(|i| 1e17 + f64::from(i) * 16.0),
             Just(-0.0),
         ];
-        prop::collection::vec([coordinate.clone(), coordinate.clone(), coordinate].prop_map(DVec3::from), 0..120)
+        prop::collection::vec(
+            [coordinate.clone(), coordinate.clone(), coordinate].prop_map(DVec3::from),
+            0..120,
+        )
     }
 
     proptest! {

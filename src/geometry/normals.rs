@@ -1,8 +1,8 @@
 //! Vertex and face normals.
 
 use super::{direction, unit_scale};
-use crate::{FaceKey, Mesh, Polygons, VertexKey};
 use crate::mesh::read;
+use crate::{FaceKey, Mesh, Polygons, VertexKey};
 use glam::DVec3;
 
 /// How much each face counts in the normal of a vertex.
@@ -68,7 +68,8 @@ impl Mesh {
     /// the faces cancel. O(corners of the faces around it).
     pub fn vertex_normal(&self, v: VertexKey, weight: NormalWeight) -> Option<DVec3> {
         let slot = self.vertex_slot(v)?;
-        let corners = || self.outgoing_slots(slot).filter(|&h| self.face[h as usize] != crate::matching::NONE);
+        let corners =
+            || self.outgoing_slots(slot).filter(|&h| self.face[h as usize] != crate::matching::NONE);
         let scale = unit_scale(corners().flat_map(|h| self.loop_slots(h)).map(|h| self.at(h)));
         let sum: DVec3 = corners()
             .map(|h| {

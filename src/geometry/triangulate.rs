@@ -37,7 +37,8 @@ impl Triangulator {
                 let scale = unit_scale(corners.iter().map(|&v| at(v)));
                 if self.cycle.len() == 4 {
                     let quad = [0, 1, 2, 3].map(|i| at(self.cycle[i]) * scale);
-                    let cut = if first_diagonal(quad) { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
+                    let cut =
+                        if first_diagonal(quad) { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
                     self.triangles.extend(cut);
                 } else {
                     self.flatten(|v| at(v) * scale);
@@ -157,8 +158,14 @@ impl Grid {
         let size = max - min;
         let per = |length: f64| if length > 0.0 { side as f64 / length } else { 0.0 };
         let per_unit = DVec2::new(per(size.x), per(size.y));
-        let mut grid =
-            Self { origin: min, per_unit, columns: side, rows: side, starts: vec![0; side * side + 1], corners: vec![] };
+        let mut grid = Self {
+            origin: min,
+            per_unit,
+            columns: side,
+            rows: side,
+            starts: vec![0; side * side + 1],
+            corners: vec![],
+        };
         let cell = |i: usize| {
             let [x, y] = grid.cell(plane[i]);
             y * side + x
@@ -219,7 +226,7 @@ mod tests {
     fn star(n: usize) -> Vec<DVec3> {
         let corner = |i: usize| {
             let (s, c) = (i as f64 * std::f64::consts::PI / n as f64).sin_cos();
-            let r = if i % 2 == 0 { 1.0 } else { 1.0 / 3.0 };
+            let r = if i.is_multiple_of(2) { 1.0 } else { 1.0 / 3.0 };
             dvec3(c * r, s * r, 0.5 * c * r)
         };
         (0..2 * n).map(corner).collect()
@@ -276,7 +283,8 @@ mod tests {
     fn polygons_without_area_or_with_crossings_give_all_their_triangles() {
         let line: Vec<DVec3> = (0..9).map(|i| dvec3(i as f64, 0., 0.)).collect();
         assert_eq!(cut(&line, &[0, 3, 1, 4, 2, 8, 5]).len(), 5);
-        let bow = [dvec3(0., 0., 0.), dvec3(2., 2., 0.), dvec3(2., 0., 0.), dvec3(0., 2., 0.), dvec3(-1., 1., 0.)];
+        let bow =
+            [dvec3(0., 0., 0.), dvec3(2., 2., 0.), dvec3(2., 0., 0.), dvec3(0., 2., 0.), dvec3(-1., 1., 0.)];
         assert_eq!(cut(&bow, &[0, 1, 2, 3, 4]).len(), 3);
     }
 }

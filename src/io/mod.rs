@@ -127,7 +127,8 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, Rea
 pub fn read_file(path: impl AsRef<Path>, limits: &Limits) -> Result<Loaded, ReadError> {
     let path = path.as_ref();
     let bytes = std::fs::read(path)?;
-    let format = Format::from_path(path).or_else(|| Format::detect(&bytes)).ok_or(ReadError::UnknownFormat)?;
+    let format =
+        Format::from_path(path).or_else(|| Format::detect(&bytes)).ok_or(ReadError::UnknownFormat)?;
     read(&bytes, format, limits)
 }
 

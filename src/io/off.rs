@@ -2,7 +2,9 @@
 //! count), and `OFF BINARY`.
 
 use super::error::{Malformed, NoteKind, Notes, Place, ReadError, WriteError};
-use super::text::{Lines, Number, before_comment, integer, is_integer, number_at, shown, without_mark, words};
+use super::text::{
+    Lines, Number, before_comment, integer, is_integer, number_at, shown, without_mark, words,
+};
 use super::{Limits, Loaded, Lost, check_writable};
 use crate::{PolygonSoup, Polygons};
 use glam::DVec3;
@@ -228,7 +230,8 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     let counts = |read: fn([u8; 4]) -> u32| Some([read(word(0)?), read(word(1)?), read(word(2)?)]);
     let fits = |c: &[u32; 3]| 3 + 3 * u64::from(c[0]) + u64::from(c[1]) <= data.len() as u64 / 4;
     let big = counts(u32::from_be_bytes).ok_or(truncated(0, "the counts"))?;
-    let (read, [vertices, faces, _]): (fn([u8; 4]) -> u32, _) = match counts(u32::from_le_bytes).filter(fits) {
+    let (read, [vertices, faces, _]): (fn([u8; 4]) -> u32, _) = match counts(u32::from_le_bytes).filter(fits)
+    {
         Some(little) if !fits(&big) || little[0] <= big[0] => (u32::from_le_bytes, little),
         _ => (u32::from_be_bytes, big),
     };

@@ -81,7 +81,10 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
         notes.add(NoteKind::TrailingData, Place::Byte((HEADER + FACET * count) as u64));
     }
     let triangles: Vec<[u32; 3]> = (0..wanted as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Ok(Loaded { soup: PolygonSoup::new(positions, Polygons::from_triangles(&triangles)), notes: notes.finish() })
+    Ok(Loaded {
+        soup: PolygonSoup::new(positions, Polygons::from_triangles(&triangles)),
+        notes: notes.finish(),
+    })
 }
 
 fn read_ascii(text: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
@@ -102,7 +105,9 @@ fn read_ascii(text: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
             }
             let mut p = DVec3::ZERO;
             for i in 0..3 {
-                let Some(word) = words.next() else { return malformed(Malformed::Expected("three coordinates")) };
+                let Some(word) = words.next() else {
+                    return malformed(Malformed::Expected("three coordinates"));
+                };
                 p[i] = number_at(line, word)?;
             }
             if !p.is_finite() {

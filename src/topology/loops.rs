@@ -90,4 +90,3 @@ fn across_fan(topology: &Topology<'_>, edge: usize, v: u32) -> Option<usize> {
         }
     }
 }
-

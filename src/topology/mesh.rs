@@ -48,7 +48,9 @@ impl Mesh {
         let mut components = Vec::new();
         for f in self.faces.live() {
             if !seen[f as usize] {
-                components.push(self.component_slots(f, &mut seen).into_iter().map(|f| self.faces.key(f)).collect());
+                components.push(
+                    self.component_slots(f, &mut seen).into_iter().map(|f| self.faces.key(f)).collect(),
+                );
             }
         }
         components

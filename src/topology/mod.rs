@@ -201,8 +201,10 @@ impl<'m> Topology<'m> {
 
     /// The number of handles of a closed, orientable surface of one component without pinches; `None` for any other.
     pub fn genus(&self) -> Option<u64> {
-        let surface =
-            self.is_closed() && self.components().1 == 1 && self.is_vertex_manifold() && self.orientable().is_ok();
+        let surface = self.is_closed()
+            && self.components().1 == 1
+            && self.is_vertex_manifold()
+            && self.orientable().is_ok();
         surface.then(|| ((2 - self.euler_characteristic()) / 2).unsigned_abs())
     }
 

@@ -59,7 +59,8 @@ pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, No
         flip_faces(&mut polygons, None, &found.flip);
         for (face, _) in found.flip.iter().enumerate().filter(|(_, flip)| **flip) {
             let corners = &mesh.polygons()[face];
-            let sum: DVec3 = corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
+            let sum: DVec3 =
+                corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
             report.records.push(Record {
                 step: Step::Unify,
                 kind: Kind::FlippedFace,
@@ -126,8 +127,8 @@ pub(crate) fn orient(polygons: &Polygons, face_of: &FaceOf, mates: &[u32]) -> Or
             if now > best || now == best && root < pieces.root(keeper) {
                 keeper = root;
             }
-            for c in polygons.starts()[f as usize]..polygons.starts()[f as usize + 1] {
-                let m = mates[c];
+            let corners = polygons.starts()[f as usize]..polygons.starts()[f as usize + 1];
+            for (c, &m) in corners.clone().zip(&mates[corners]) {
                 if m == NONE {
                     continue;
                 }

@@ -99,7 +99,8 @@ impl Mesh {
     /// Invariants build on each other: M2 is examined if M1 holds, M3 to M7 if M2 holds, the rest if M3 to M6 hold,
     /// because a walk along broken links says nothing. O(n log n).
     pub fn violations(&self) -> Vec<Violation> {
-        let layers = [Self::storage_violations, Self::dangling_links, Self::local_violations, Self::walk_violations];
+        let layers =
+            [Self::storage_violations, Self::dangling_links, Self::local_violations, Self::walk_violations];
         layers.into_iter().map(|layer| layer(self)).find(|found| !found.is_empty()).unwrap_or_default()
     }
 
@@ -157,15 +158,17 @@ impl Mesh {
     /// M3 to M7: what two neighbouring records say.
     fn local_violations(&self) -> Vec<Violation> {
         let mut found = Vec::new();
-        let each = |found: &mut Vec<_>, broken: &dyn Fn(usize) -> bool, name: fn(HalfedgeKey) -> Violation| {
-            let halfedges = self.halfedge_slots().filter(|&h| broken(h as usize));
-            found.extend(halfedges.map(|h| name(self.halfedge_key(h))));
-        };
+        let each =
+            |found: &mut Vec<_>, broken: &dyn Fn(usize) -> bool, name: fn(HalfedgeKey) -> Violation| {
+                let halfedges = self.halfedge_slots().filter(|&h| broken(h as usize));
+                found.extend(halfedges.map(|h| name(self.halfedge_key(h))));
+            };
         let next = |h: usize| self.next[h] as usize;
         let inverse = |h: usize| self.prev[next(h)] as usize == h && next(self.prev[h] as usize) == h;
         each(&mut found, &|h| !inverse(h), Violation::NextPrev);
         each(&mut found, &|h| self.origin[next(h)] != self.origin[h ^ 1], Violation::Gap);
-        let loops = self.edges.live().filter(|&e| self.origin[2 * e as usize] == self.origin[2 * e as usize + 1]);
+        let loops =
+            self.edges.live().filter(|&e| self.origin[2 * e as usize] == self.origin[2 * e as usize + 1]);
         found.extend(loops.map(|e| Violation::LoopEdge(self.edges.key(e))));
         each(&mut found, &|h| self.face[next(h)] != self.face[h], Violation::FaceChange);
         let strayed = self.faces.live().filter(|&f| self.face[self.face_halfedge[f as usize] as usize] != f);
@@ -176,14 +179,20 @@ impl Mesh {
     /// M8 to M18: what takes a walk. `next` is a permutation here, so every walk comes back.
     fn walk_violations(&self) -> Vec<Violation> {
         let mut found = self.loop_violations();
-        let edges = self.edges.live().filter(|&e| self.face[2 * e as usize] == NONE && self.face[2 * e as usize + 1] == NONE);
+        let edges = self
+            .edges
+            .live()
+            .filter(|&e| self.face[2 * e as usize] == NONE && self.face[2 * e as usize + 1] == NONE);
         found.extend(edges.map(|e| Violation::FacelessEdge(self.edges.key(e))));
         found.extend(self.fan_violations());
         found.extend(self.repeated_elements());
         let finite = |v: u32| {
-            self.positions[v as usize].is_finite() && self.normals.as_ref().is_none_or(|n| n[v as usize].is_finite())
+            self.positions[v as usize].is_finite()
+                && self.normals.as_ref().is_none_or(|n| n[v as usize].is_finite())
         };
-        found.extend(self.vertices.live().filter(|&v| !finite(v)).map(|v| Violation::NonFinite(self.vertices.key(v))));
+        found.extend(
+            self.vertices.live().filter(|&v| !finite(v)).map(|v| Violation::NonFinite(self.vertices.key(v))),
+        );
         found
     }
 
@@ -199,7 +208,10 @@ impl Mesh {
                 on_loop[h as usize] = true;
                 let v = self.origin[h as usize];
                 if std::mem::replace(&mut stamp[v as usize], f) == f {
-                    repeated.push(Violation::RepeatedCorner { face: self.faces.key(f), vertex: self.vertices.key(v) });
+                    repeated.push(Violation::RepeatedCorner {
+                        face: self.faces.key(f),
+                        vertex: self.vertices.key(v),
+                    });
                 }
             }
             if degree < 3 {
@@ -259,8 +271,9 @@ impl Mesh {
         let mut edges: Vec<_> = self.edges.live().map(|e| (ends(e), e)).collect();
         edges.sort_unstable();
         let parallel = edges.windows(2).filter(|w| w[0].0 == w[1].0);
-        let mut found: Vec<_> =
-            parallel.map(|w| Violation::ParallelEdges(self.edges.key(w[0].1), self.edges.key(w[1].1))).collect();
+        let mut found: Vec<_> = parallel
+            .map(|w| Violation::ParallelEdges(self.edges.key(w[0].1), self.edges.key(w[1].1)))
+            .collect();
 
         let mut cycles: Vec<(Vec<u32>, u32)> = Vec::with_capacity(self.face_count());
         for f in self.faces.live() {

@@ -46,7 +46,8 @@ fn sound_meshes_have_no_violations() {
 
 #[test]
 fn m1_a_column_of_the_wrong_length_is_found() {
-    let columns: [(&str, fn(&mut Mesh)); 8] = [
+    type Damage = fn(&mut Mesh);
+    let columns: [(&str, Damage); 8] = [
         ("next", |m| m.next.push(0)),
         ("prev", |m| m.prev.truncate(1)),
         ("origin", |m| m.origin.push(0)),
@@ -78,7 +79,8 @@ fn m1_an_arena_whose_versions_disagree_with_its_slots_is_found() {
 
 #[test]
 fn m2_links_that_lead_nowhere_are_found_in_every_column() {
-    let columns: [(&str, fn(&mut Mesh) -> &mut Vec<u32>); 6] = [
+    type Column = fn(&mut Mesh) -> &mut Vec<u32>;
+    let columns: [(&str, Column); 6] = [
         ("next", |m| &mut m.next),
         ("prev", |m| &mut m.prev),
         ("origin", |m| &mut m.origin),
@@ -236,7 +238,8 @@ fn m14_a_vertex_with_two_fans_is_found() {
 
     // The same with the boundary strung through both fans, so that one walk sees them all.
     let own = mesh.vertex_halfedge[1] as usize;
-    let other = mesh.boundary_slots().find(|&h| h as usize != own && mesh.origin[h as usize] == 1).unwrap() as usize;
+    let other =
+        mesh.boundary_slots().find(|&h| h as usize != own && mesh.origin[h as usize] == 1).unwrap() as usize;
     let (p, q) = (mesh.prev[own] as usize, mesh.prev[other] as usize);
     (mesh.next[p], mesh.next[q]) = (other as u32, own as u32);
     (mesh.prev[other], mesh.prev[own]) = (p as u32, q as u32);
@@ -361,6 +364,7 @@ fn ranks_keep_the_users_order_through_the_conversion_back() {
     let n = plain.vertex_count() as u32;
     let reversed: Vec<DVec3> = plain.positions().iter().rev().copied().collect();
     assert_eq!(ranked.positions(), reversed);
-    let expected: Polygons = (0..3).rev().map(|f| plain.polygons()[f].iter().map(|v| n - 1 - v).collect::<Vec<_>>()).collect();
+    let expected: Polygons =
+        (0..3).rev().map(|f| plain.polygons()[f].iter().map(|v| n - 1 - v).collect::<Vec<_>>()).collect();
     assert_eq!(*ranked.polygons(), expected);
 }

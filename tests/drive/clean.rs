@@ -104,7 +104,8 @@ pub(crate) fn check(case: &Soup) {
 
     // New boundary only at recorded edges.
     let indexed = index(&soup, weld).expect("a soup is never refused").value;
-    if report.count(Kind::NonManifoldEdge) + report.count(Kind::CutEdge) + report.count(Kind::DuplicateFace) == 0
+    if report.count(Kind::NonManifoldEdge) + report.count(Kind::CutEdge) + report.count(Kind::DuplicateFace)
+        == 0
         && indexed.topology().nonmanifold_edges().next().is_none()
     {
         assert_eq!(mesh.boundary_halfedges().count(), indexed.topology().boundary_edges().count());
@@ -118,7 +119,8 @@ pub(crate) fn check(case: &Soup) {
 
     // A second pass changes nothing.
     let again = PolygonSoup::from(pool.clone());
-    let again = clean(&again, CleanOptions { weld: Weld::None, ..Default::default() }).expect("never refused");
+    let again =
+        clean(&again, CleanOptions { weld: Weld::None, ..Default::default() }).expect("never refused");
     assert_eq!(again.report.records, []);
     assert_eq!(again.value.to_indexed(), pool);
     assert!(again.maps.vertices.is_identity() && again.maps.faces.is_identity());

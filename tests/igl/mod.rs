@@ -93,11 +93,17 @@ impl Opinion {
     }
 
     pub(crate) fn integers(&self, name: &str) -> Vec<i64> {
-        self.arrays[name].chunks_exact(8).map(|b| i64::from_le_bytes(b.try_into().expect("eight bytes"))).collect()
+        self.arrays[name]
+            .chunks_exact(8)
+            .map(|b| i64::from_le_bytes(b.try_into().expect("eight bytes")))
+            .collect()
     }
 
     pub(crate) fn numbers(&self, name: &str) -> Vec<f64> {
-        self.arrays[name].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes"))).collect()
+        self.arrays[name]
+            .chunks_exact(8)
+            .map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes")))
+            .collect()
     }
 
     pub(crate) fn flags(&self, name: &str) -> Vec<bool> {
@@ -108,7 +114,9 @@ impl Opinion {
 /// The interpreter of the virtual environment, which is made on first use. Several tests may come at once: a lock lets
 /// one make it, and a stamp written last tells that it is whole.
 fn environment() -> PathBuf {
-    let hash = REQUIREMENTS.bytes().fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    let hash = REQUIREMENTS
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
     let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("igl-{hash:016x}"));
     fs::create_dir_all(&root).expect("a directory under target/");
     let lock = File::create(root.join("lock")).expect("a lock file");
@@ -122,8 +130,21 @@ fn environment() -> PathBuf {
         run(Command::new(&system).args(["-m", "venv"]).arg(&venv), "Python 3 with its venv module");
         let requirements = root.join("requirements.txt");
         fs::write(&requirements, REQUIREMENTS).expect("a file under target/");
-        let pip = ["-m", "pip", "install", "--quiet", "--no-deps", "--only-binary", ":all:", "--require-hashes", "-r"];
-        run(Command::new(&python).args(pip).arg(&requirements), "libigl from the package index (Python 3.10 to 3.13)");
+        let pip = [
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--no-deps",
+            "--only-binary",
+            ":all:",
+            "--require-hashes",
+            "-r",
+        ];
+        run(
+            Command::new(&python).args(pip).arg(&requirements),
+            "libigl from the package index (Python 3.10 to 3.13)",
+        );
         fs::write(&stamp, "").expect("a file under target/");
     }
     python

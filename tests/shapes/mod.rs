@@ -21,8 +21,8 @@ pub(crate) fn soup(pool: &IndexedMesh) -> PolygonSoup {
 /// The unit cube at `corner`, six quads.
 pub(crate) fn cube_at(corner: DVec3) -> IndexedMesh {
     let at = |i: u32| corner + dvec3(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
-    let faces =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]].map(|f| f.to_vec());
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        .map(|f| f.to_vec());
     pool((0..8).map(at).collect(), faces.to_vec())
 }
 
@@ -67,7 +67,8 @@ pub(crate) fn fins() -> IndexedMesh {
 
 /// Two triangles that share one vertex.
 pub(crate) fn bow_tie() -> IndexedMesh {
-    let points = vec![DVec3::ZERO, dvec3(1., -1., 0.), dvec3(1., 1., 0.), dvec3(-1., 1., 0.), dvec3(-1., -1., 0.)];
+    let points =
+        vec![DVec3::ZERO, dvec3(1., -1., 0.), dvec3(1., 1., 0.), dvec3(-1., 1., 0.), dvec3(-1., -1., 0.)];
     pool(points, vec![vec![0, 1, 2], vec![0, 3, 4]])
 }
 
@@ -200,7 +201,9 @@ pub(crate) fn shuffled(of: &IndexedMesh, seed: u64) -> IndexedMesh {
     let (vertices, faces) = (order(of.vertex_count()), order(of.face_count()));
     let mut number = vec![0; vertices.len()];
     (0..).zip(&vertices).for_each(|(new, &old)| number[old as usize] = new);
-    let polygons = faces.iter().map(|&f| of.polygons()[f as usize].iter().map(|&v| number[v as usize]).collect::<Vec<_>>());
+    let polygons = faces
+        .iter()
+        .map(|&f| of.polygons()[f as usize].iter().map(|&v| number[v as usize]).collect::<Vec<_>>());
     let positions = vertices.iter().map(|&v| of.positions()[v as usize]).collect();
     IndexedMesh::new(positions, polygons.collect()).expect("a valid vertex pool")
 }
@@ -225,4 +228,3 @@ impl Noise {
         (self.bits() % u64::from(n.max(1))) as u32
     }
 }
-

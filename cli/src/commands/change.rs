@@ -29,7 +29,8 @@ fn import_change_write(
         "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "lost": lost, "import": import,
     });
     let destination = args.output.output.path.display();
-    let text = format!("wrote {destination}: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
+    let text =
+        format!("wrote {destination}: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
     Ok(Answer { json: fields(json), text, is_no: false })
 }
 

@@ -30,11 +30,21 @@ fn describe(f: &Facts) -> String {
     let degrees: Vec<String> = f.face_degrees.iter().map(|(d, n)| format!("{n} of {d} corners")).collect();
     let mut rows: Vec<(&str, String)> = vec![
         ("vertices", format!("{} ({} used after welding)", f.vertices, f.used_vertices)),
-        ("faces", if degrees.is_empty() { "none".to_owned() } else { format!("{}: {}", f.faces, degrees.join(", ")) }),
+        (
+            "faces",
+            if degrees.is_empty() {
+                "none".to_owned()
+            } else {
+                format!("{}: {}", f.faces, degrees.join(", "))
+            },
+        ),
         ("components", f.components.to_string()),
         ("closed", format!("{}{}", yes(f.closed), boundary(f))),
         ("manifold", yes(f.manifold).to_owned()),
-        ("oriented", format!("{}{}", yes(f.oriented), if f.orientable { "" } else { ", and cannot be oriented" })),
+        (
+            "oriented",
+            format!("{}{}", yes(f.oriented), if f.orientable { "" } else { ", and cannot be oriented" }),
+        ),
         ("Euler characteristic", f.euler_characteristic.to_string()),
     ];
     rows.extend(f.genus.map(|g| ("genus", g.to_string())));
@@ -114,11 +124,11 @@ pub(super) fn naked_edges(session: &mut Session, args: &Inspect) -> Result<Answe
 
 pub(super) fn volume(session: &mut Session, args: &Volume) -> Result<Answer, Failure> {
     let (mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
-    let measured = session.timed(Phase::Run, || {
-        mesh.closed().map(|solid| (solid.volume(), solid.area(), solid.centroid()))
-    });
+    let measured = session
+        .timed(Phase::Run, || mesh.closed().map(|solid| (solid.volume(), solid.area(), solid.centroid())));
     let (volume, area, centroid) = measured.map_err(|error| {
-        let mut json = Map::from_iter([("closed".to_owned(), json!(false)), ("import".to_owned(), import.clone())]);
+        let mut json =
+            Map::from_iter([("closed".to_owned(), json!(false)), ("import".to_owned(), import.clone())]);
         if let NotClosed::Open { boundary } = &error {
             json.insert("boundary_edges".to_owned(), json!(boundary.len()));
             json.insert("witness".to_owned(), json!(boundary.first().map(|&h| ends(&mesh, h))));

@@ -1,8 +1,8 @@
 //! The filter in front of tobj: it reads every statement, keeps what tobj would lose, and passes on what tobj does well.
 
+use super::super::Limits;
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::text::{Lines, before_comment, integer, is_integer, number, number_at, shown, words};
-use super::super::Limits;
 use crate::{CornerData, Group, PolygonSoup};
 use glam::DVec3;
 use std::borrow::Cow;
@@ -256,7 +256,11 @@ impl<'a> Filter<'a> {
         Ok(())
     }
 
-    fn vertex<'w>(&mut self, line: u64, words: impl Iterator<Item = &'w [u8]> + Clone) -> Result<(), ReadError> {
+    fn vertex<'w>(
+        &mut self,
+        line: u64,
+        words: impl Iterator<Item = &'w [u8]> + Clone,
+    ) -> Result<(), ReadError> {
         self.plain.push(b'v');
         for word in words.clone().take(3) {
             self.plain.push(b' ');

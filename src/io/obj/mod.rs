@@ -48,8 +48,12 @@ pub fn read_obj(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
         return Err(ReadError::line(1, reason));
     }
     let mut filter = Filter::new(text, counts, *limits);
-    let options =
-        tobj::LoadOptions { single_index: false, triangulate: false, ignore_points: false, ignore_lines: false };
+    let options = tobj::LoadOptions {
+        single_index: false,
+        triangulate: false,
+        ignore_points: false,
+        ignore_lines: false,
+    };
     let loaded = tobj::load_obj_buf(&mut filter, &options, |_: &Path| Err(tobj::LoadError::OpenFileFailed));
     let kept = filter.finish()?;
     let model = match loaded {

@@ -160,7 +160,8 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes) -> Result<Header, ReadError>
         match keyword {
             Some(b"end_header") => {
                 // Lone carriage returns so far mean that a newline here belongs to the data.
-                let lone = bytes[..header.end - 1].contains(&b'\r') && !bytes[..header.end].windows(2).any(|w| w == b"\r\n");
+                let lone = bytes[..header.end - 1].contains(&b'\r')
+                    && !bytes[..header.end].windows(2).any(|w| w == b"\r\n");
                 if is_pair && !lone {
                     header.end += 1;
                 }
@@ -172,7 +173,11 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes) -> Result<Header, ReadError>
                     Some(b"ascii") => Encoding::Ascii,
                     Some(b"binary_little_endian") => Encoding::Little,
                     Some(b"binary_big_endian") => Encoding::Big,
-                    _ => return malformed(Malformed::Expected("ascii, binary_little_endian or binary_big_endian")),
+                    _ => {
+                        return malformed(Malformed::Expected(
+                            "ascii, binary_little_endian or binary_big_endian",
+                        ));
+                    }
                 };
             }
             Some(b"element") => {
@@ -187,10 +192,12 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes) -> Result<Header, ReadError>
                 let Some(element) = header.elements.last_mut() else {
                     return malformed(Malformed::Header("has a property before any element"));
                 };
-                element.properties.push(property(words).ok_or(ReadError::line(
-                    line,
-                    Malformed::Expected("the type and name of a property"),
-                ))?);
+                element.properties.push(
+                    property(words).ok_or(ReadError::line(
+                        line,
+                        Malformed::Expected("the type and name of a property"),
+                    ))?,
+                );
             }
             Some(b"comment" | b"obj_info") | None => {}
             Some(_) => return malformed(Malformed::Expected("a statement of a PLY header")),

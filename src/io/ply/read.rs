@@ -47,7 +47,8 @@ fn check_promises(header: &Header, room: u64, limits: &Limits) -> Result<(), Rea
     let Some(vertex) = header.elements.iter().find(|e| e.name == b"vertex") else {
         return at_end(Malformed::Header("has no vertices"));
     };
-    if [b"x", b"y", b"z"].iter().any(|n| vertex.find(*n).is_none_or(|i| vertex.properties[i].list.is_some())) {
+    if [b"x", b"y", b"z"].iter().any(|n| vertex.find(*n).is_none_or(|i| vertex.properties[i].list.is_some()))
+    {
         return at_end(Malformed::Header("gives vertices no x, y and z"));
     }
     for face in header.elements.iter().filter(|e| e.name == b"face") {
@@ -61,7 +62,7 @@ fn check_promises(header: &Header, room: u64, limits: &Limits) -> Result<(), Rea
             Encoding::Ascii => 2 * element.properties.len() as u64,
             _ => element.fewest_bytes(),
         };
-        let fits = if each == 0 { 0 } else { (room + 1) / each };
+        let fits = (room + 1).checked_div(each).unwrap_or(0);
         if element.count > fits && element.count > 0 {
             return at_end(Malformed::Promise { what: "elements", wanted: element.count, room: fits });
         }
@@ -96,7 +97,8 @@ impl VertexLayout {
         };
         let color = three([b"red", b"green", b"blue"]).or(three([b"r", b"g", b"b"]));
         let color = color.map(|c| (c, scalar(&&b"alpha"[..]), vertex.properties[c[0]].scalar.full()));
-        let pairs: [[&[u8]; 2]; 4] = [[b"s", b"t"], [b"u", b"v"], [b"texture_u", b"texture_v"], [b"s0", b"t0"]];
+        let pairs: [[&[u8]; 2]; 4] =
+            [[b"s", b"t"], [b"u", b"v"], [b"texture_u", b"texture_v"], [b"s0", b"t0"]];
         let uv = pairs.iter().find_map(|[u, v]| Some([scalar(u)?, scalar(v)?]));
         let (position, normal) = (three([b"x", b"y", b"z"])?, three([b"nx", b"ny", b"nz"]));
         let alpha = color.is_some_and(|c| c.1.is_some());
@@ -199,11 +201,15 @@ impl Reader {
                     let length = count.decode(&data[at..], big).ok_or_else(truncated)?;
                     at += count.size();
                     if length < 0.0 {
-                        return Err(ReadError::byte(start, Malformed::Expected("a list of no negative length")));
+                        return Err(ReadError::byte(
+                            start,
+                            Malformed::Expected("a list of no negative length"),
+                        ));
                     }
                     let size = property.scalar.size();
                     // Below 2^32 times 8: fits.
-                    let bytes = data.get(at..).and_then(|d| d.get(..length as usize * size)).ok_or_else(truncated)?;
+                    let bytes =
+                        data.get(at..).and_then(|d| d.get(..length as usize * size)).ok_or_else(truncated)?;
                     at += bytes.len();
                     if matches!(role, Role::Face(l) if l == i) {
                         list.clear();
@@ -300,7 +306,8 @@ impl Reader {
     fn finish(mut self) -> Loaded {
         if !self.uvs.is_empty() {
             let corners = self.soup.polygons.corners().iter();
-            let indices = corners.map(|&v| if (v as usize) < self.uvs.len() { v } else { CornerData::<f64>::NONE });
+            let indices =
+                corners.map(|&v| if (v as usize) < self.uvs.len() { v } else { CornerData::<f64>::NONE });
             self.soup.corner_uvs = Some(CornerData { indices: indices.collect(), values: self.uvs });
         }
         Loaded { soup: self.soup, notes: self.notes.finish() }

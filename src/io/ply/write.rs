@@ -86,7 +86,8 @@ fn write<W: Write>(
     let bytes = colors.is_some_and(|c| c.iter().flatten().all(|&c| f32::from(byte(c)) / 255.0 == c));
     // Texture coordinates per vertex, where corners refer to them so.
     let corners = soup.polygons.corners();
-    let uvs = soup.corner_uvs.as_ref().filter(|d| d.values.len() == soup.positions.len() && d.indices == corners);
+    let uvs =
+        soup.corner_uvs.as_ref().filter(|d| d.values.len() == soup.positions.len() && d.indices == corners);
 
     writeln!(sink, "ply\nformat {encoding} 1.0\nelement vertex {}", soup.positions.len())?;
     let mut properties = |names: &[&str], kind: &str| {
@@ -106,7 +107,11 @@ fn write<W: Write>(
     let most = soup.polygons.iter().map(<[u32]>::len).max().unwrap_or(0);
     let is_small = most <= 255;
     let count = if is_small { "uchar" } else { "uint" };
-    writeln!(sink, "element face {}\nproperty list {count} uint vertex_indices\nend_header", soup.polygons.len())?;
+    writeln!(
+        sink,
+        "element face {}\nproperty list {count} uint vertex_indices\nend_header",
+        soup.polygons.len()
+    )?;
 
     for (i, p) in soup.positions.iter().enumerate() {
         for x in p.to_array().into_iter().chain(normals.into_iter().flat_map(|n| n[i].to_array())) {
