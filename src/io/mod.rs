@@ -1,4 +1,4 @@
-//! Files to and from [`PolygonSoup`](crate::PolygonSoup): OBJ, STL, PLY and OFF, under [`Limits`].
+//! Files to and from [`PolygonSoup`]: OBJ, STL, PLY and OFF, under [`Limits`].
 //!
 //! Readers take bytes and promise nothing about what they return except that the file said it; what they skipped or
 //! tolerated stands in [`Loaded::notes`] with its line or byte. Errors blame the source, the file, the caller or a
