@@ -247,6 +247,9 @@ pub enum Lost {
     /// Colours.
     #[error("colours")]
     Colors,
+    /// How transparent colours are.
+    #[error("the transparency of colours")]
+    Transparency,
     /// Texture coordinates.
     #[error("texture coordinates")]
     TextureCoordinates,

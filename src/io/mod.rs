@@ -186,6 +186,15 @@ fn per_vertex<'s, T>(data: &'s [T], soup: &PolygonSoup) -> Option<&'s [T]> {
     (!data.is_empty() && data.len() == soup.positions.len()).then_some(data)
 }
 
+/// What a format carries that has room for one normal and one colour at each vertex.
+fn vertex_data(soup: &PolygonSoup) -> Vec<Lost> {
+    let carried = [
+        (Lost::Normals, soup.corner_normals.is_none() && per_vertex(&soup.vertex_normals, soup).is_some()),
+        (Lost::Colors, per_vertex(&soup.vertex_colors, soup).is_some()),
+    ];
+    carried.into_iter().filter(|c| c.1).map(|c| c.0).collect()
+}
+
 /// What the soup has beyond positions and faces, less what was carried.
 fn lost(soup: &PolygonSoup, carried: &[Lost]) -> Vec<Lost> {
     let has = [

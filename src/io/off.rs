@@ -331,5 +331,5 @@ pub fn write_off(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
         }
         writeln!(sink)?;
     }
-    Ok(super::lost(soup, &[Lost::Normals, Lost::Colors]))
+    Ok(super::lost(soup, &super::vertex_data(soup)))
 }

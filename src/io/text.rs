@@ -36,10 +36,16 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     line.split(|b| b.is_ascii_whitespace() || *b == 0).filter(|w| !w.is_empty())
 }
 
-/// The line up to a `#`.
+/// The line up to a `#`, unless that stands in a number such as `1.#IND`.
 pub(super) fn before_comment(line: &[u8]) -> &[u8] {
-    let end = line.iter().position(|&b| b == b'#').unwrap_or(line.len());
-    &line[..end]
+    let mut from = 0;
+    while let Some(at) = line[from..].iter().position(|&b| b == b'#').map(|i| from + i) {
+        if !line[..at].ends_with(b"1.") {
+            return &line[..at];
+        }
+        from = at + 1;
+    }
+    line
 }
 
 /// A number in any spelling that occurs, those of C libraries for NaN and infinity included.

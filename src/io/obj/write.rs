@@ -71,7 +71,17 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
         }
         writeln!(sink)?;
     }
-    Ok(lost(soup, &[Lost::Normals, Lost::Colors, Lost::TextureCoordinates, Lost::Groups]))
+    let mut carried = vec![Lost::Groups];
+    carried.extend(uvs.map(|_| Lost::TextureCoordinates));
+    carried.extend(colors.map(|_| Lost::Colors));
+    if corner_normals.is_some() || vertex_normals.is_some() {
+        carried.push(Lost::Normals);
+    }
+    let mut lost = lost(soup, &carried);
+    if colors.is_some_and(|c| c.iter().any(|rgba| rgba[3] != 1.0)) {
+        lost.push(Lost::Transparency);
+    }
+    Ok(lost)
 }
 
 /// The index from 1 of a corner's value, if it has one.

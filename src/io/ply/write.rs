@@ -2,7 +2,7 @@
 
 use super::super::error::{Lost, WriteError};
 use super::super::text::Number;
-use super::super::{check_writable, lost, per_vertex};
+use super::super::{check_writable, lost, per_vertex, vertex_data};
 use crate::PolygonSoup;
 use std::io::Write;
 
@@ -132,9 +132,7 @@ fn write<W: Write>(
         }
         put(sink, Value::EndOfElement)?;
     }
-    let carried: &[Lost] = match uvs {
-        Some(_) => &[Lost::Normals, Lost::Colors, Lost::TextureCoordinates],
-        None => &[Lost::Normals, Lost::Colors],
-    };
-    Ok(lost(soup, carried))
+    let mut carried = vertex_data(soup);
+    carried.extend(uvs.map(|_| Lost::TextureCoordinates));
+    Ok(lost(soup, &carried))
 }
