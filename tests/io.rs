@@ -7,8 +7,8 @@ mod shapes;
 use drive::round_trip;
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::io::{
-    self, Encoding, Format, Limits, Loaded, Lost, Malformed, NoteKind, Place, ReadError, WriteError, read_obj, read_off,
-    read_ply, read_stl,
+    self, Encoding, Format, Limits, Loaded, Lost, Malformed, NoteKind, Place, ReadError, WriteError,
+    read_obj, read_off, read_ply, read_stl,
 };
 use meshwright::{CornerData, Group, PolygonSoup, Polygons};
 use shapes::Noise;
@@ -39,7 +39,8 @@ fn read(file: &[u8], format: Format) -> Loaded {
 /// Two quads and a pentagon with awkward coordinates.
 fn awkward() -> PolygonSoup {
     let mut noise = Noise(4);
-    let mut points: Vec<DVec3> = (0..9).map(|_| dvec3(noise.unit(), noise.unit() * 1e-300, noise.unit() * 1e300)).collect();
+    let mut points: Vec<DVec3> =
+        (0..9).map(|_| dvec3(noise.unit(), noise.unit() * 1e-300, noise.unit() * 1e300)).collect();
     points[3] = dvec3(-0.0, f64::MIN_POSITIVE / 8.0, f64::MAX);
     points[4] = dvec3(0.1 + 0.2, 1e17, 1e-5);
     PolygonSoup::new(points, vec![vec![0, 1, 2, 3], vec![3, 2, 4, 5], vec![5, 4, 6, 7, 8]].into())
@@ -52,7 +53,8 @@ fn coordinates_and_polygons_come_back_exactly_from_obj_ply_and_off() {
         let (file, lost) = written(&soup, format, encoding);
         assert_eq!(lost, [], "{format:?}");
         let back = read(&file, format).soup;
-        let bits = |s: &PolygonSoup| s.positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
+        let bits =
+            |s: &PolygonSoup| s.positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&back), bits(&soup), "{format:?} {encoding:?}");
         assert_eq!(back.polygons, soup.polygons);
     }
@@ -60,7 +62,9 @@ fn coordinates_and_polygons_come_back_exactly_from_obj_ply_and_off() {
 
 #[test]
 fn shapes_survive_every_format() {
-    for pool in [shapes::cube(), shapes::torus(7, 5), shapes::grid(6), shapes::icosphere(2), shapes::moebius(8)] {
+    for pool in
+        [shapes::cube(), shapes::torus(7, 5), shapes::grid(6), shapes::icosphere(2), shapes::moebius(8)]
+    {
         for (format, encoding) in ALL.into_iter().chain([(Format::Stl, Encoding::Binary)]) {
             round_trip(&shapes::soup(&pool), format, encoding);
         }
@@ -92,7 +96,10 @@ fn vertex_data_survive_where_the_format_has_room_for_them() {
             Format::Obj => {
                 assert_eq!(back.vertex_colors, soup.vertex_colors);
                 let normals = back.corner_normals.expect("normals");
-                assert_eq!((normals.values, normals.indices), (soup.vertex_normals.clone(), soup.polygons.corners().to_vec()));
+                assert_eq!(
+                    (normals.values, normals.indices),
+                    (soup.vertex_normals.clone(), soup.polygons.corners().to_vec())
+                );
             }
             _ => {
                 assert_eq!(back.vertex_normals, soup.vertex_normals, "{format:?} {encoding:?}");
@@ -102,7 +109,10 @@ fn vertex_data_survive_where_the_format_has_room_for_them() {
     }
     // Colours that are no bytes stay what they are.
     soup.vertex_colors[0] = [0.123, 0.2, 0.3, 0.5];
-    assert_eq!(read(&written(&soup, Format::Ply, Encoding::Binary).0, Format::Ply).soup.vertex_colors, soup.vertex_colors);
+    assert_eq!(
+        read(&written(&soup, Format::Ply, Encoding::Binary).0, Format::Ply).soup.vertex_colors,
+        soup.vertex_colors
+    );
 }
 
 #[test]
@@ -156,23 +166,33 @@ fn a_concave_polygon_is_cut_rightly_for_stl() {
     let area: f64 = back
         .polygons
         .iter()
-        .map(|t| (back.positions[t[1] as usize] - back.positions[t[0] as usize])
-            .cross(back.positions[t[2] as usize] - back.positions[t[0] as usize]).z / 2.0)
+        .map(|t| {
+            (back.positions[t[1] as usize] - back.positions[t[0] as usize])
+                .cross(back.positions[t[2] as usize] - back.positions[t[0] as usize])
+                .z
+                / 2.0
+        })
         .sum();
     assert_eq!(area, 4.0);
 }
 
 #[test]
 fn what_could_not_be_read_back_is_not_written() {
-    let triangle = |face: Vec<u32>, x: f64| PolygonSoup::new(vec![dvec3(x, 0., 0.), DVec3::X, DVec3::Y], vec![face].into());
+    let triangle = |face: Vec<u32>, x: f64| {
+        PolygonSoup::new(vec![dvec3(x, 0., 0.), DVec3::X, DVec3::Y], vec![face].into())
+    };
     for (format, encoding) in ALL {
-        let refused = |soup: &PolygonSoup| io::write(soup, format, encoding, &mut Vec::new()).expect_err("refused");
+        let refused =
+            |soup: &PolygonSoup| io::write(soup, format, encoding, &mut Vec::new()).expect_err("refused");
         assert!(matches!(refused(&triangle(vec![0, 1, 3], 0.0)), WriteError::IndexOutOfRange { face: 0 }));
         assert!(matches!(refused(&triangle(vec![0, 1], 0.0)), WriteError::ShortFace { face: 0 }));
         assert!(matches!(refused(&triangle(vec![0, 1, 2], f64::NAN)), WriteError::NonFinite { vertex: 0 }));
     }
     let far = triangle(vec![0, 1, 2], 1e300);
-    assert!(matches!(io::write_stl(&far, &mut Vec::new()), Err(WriteError::NonFinite { vertex: 0 })), "beyond f32");
+    assert!(
+        matches!(io::write_stl(&far, &mut Vec::new()), Err(WriteError::NonFinite { vertex: 0 })),
+        "beyond f32"
+    );
     struct Full;
     impl std::io::Write for Full {
         fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
@@ -206,7 +226,10 @@ fn obj_takes_what_occurs_in_files() {
     assert_eq!(loaded.soup.polygons, vec![vec![0, 1, 2, 3], vec![0, 1, 2], vec![0, 1, 2, 3]].into());
     let group = Group { name: "caf\u{fffd}".into(), material: Some("steel".into()), faces: 0..3 };
     assert_eq!(loaded.soup.groups, [group]);
-    assert_eq!(notes(&loaded), [(NoteKind::PointOrLine, Place::Line(15)), (NoteKind::Ignored, Place::Line(17))]);
+    assert_eq!(
+        notes(&loaded),
+        [(NoteKind::PointOrLine, Place::Line(15)), (NoteKind::Ignored, Place::Line(17))]
+    );
 }
 
 #[test]
@@ -226,7 +249,10 @@ fn obj_keeps_bad_faces_in_their_place_and_notes_them() {
         vec![0, 1, 6],
     ];
     assert_eq!(loaded.soup.polygons, expected.into());
-    assert_eq!(notes(&loaded), [(NoteKind::IndexOutOfRange, Place::Line(5)), (NoteKind::ShortFace, Place::Line(6))]);
+    assert_eq!(
+        notes(&loaded),
+        [(NoteKind::IndexOutOfRange, Place::Line(5)), (NoteKind::ShortFace, Place::Line(6))]
+    );
     assert_eq!(loaded.notes[0].count, 4);
     assert_eq!(loaded.notes[0].to_string(), "line 5: face indices that name no vertex, kept (4 in all)");
 }
@@ -253,7 +279,11 @@ fn obj_numbers_that_upset_its_parser_are_seen_to() {
         assert_eq!(loaded.notes[0].kind, NoteKind::AttributeOutOfRange);
     }
     // A corner without an attribute beside some that have one, found by fuzzing the writer.
-    round_trip(&read(b"v 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1//1 2 3\n", Format::Obj).soup, Format::Obj, Encoding::Ascii);
+    round_trip(
+        &read(b"v 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1//1 2 3\n", Format::Obj).soup,
+        Format::Obj,
+        Encoding::Ascii,
+    );
 }
 
 #[test]
@@ -273,20 +303,37 @@ fn obj_refuses_with_the_line() {
 fn off_takes_all_its_headers() {
     let triangle = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     let body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    for header in ["OFF\n3 1 0\n", "OFF 3 1 0\n", "OFF3 1 3\n", "  OFF\n# remark\n\n3 1\n", "3 1 0\n", "\u{feff}OFF\r3 1 0\r"] {
+    for header in [
+        "OFF\n3 1 0\n",
+        "OFF 3 1 0\n",
+        "OFF3 1 3\n",
+        "  OFF\n# remark\n\n3 1\n",
+        "3 1 0\n",
+        "\u{feff}OFF\r3 1 0\r",
+    ] {
         let loaded = read(format!("{header}{body}").as_bytes(), Format::Off);
-        assert_eq!((loaded.soup.positions, loaded.soup.polygons), (triangle.clone(), vec![vec![0, 1, 2]].into()), "{header:?}");
+        assert_eq!(
+            (loaded.soup.positions, loaded.soup.polygons),
+            (triangle.clone(), vec![vec![0, 1, 2]].into()),
+            "{header:?}"
+        );
     }
     let colored = read(b"CNOFF 1 0 0\n1 2 3 0 0 1 255 0 51 255\n", Format::Off).soup;
     assert_eq!((colored.vertex_normals, colored.vertex_colors), (vec![DVec3::Z], vec![[1.0, 0.0, 0.2, 1.0]]));
     let extra = read(b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\nmore\n", Format::Off);
-    assert_eq!(notes(&extra), [(NoteKind::FaceColor, Place::Line(5)), (NoteKind::TrailingData, Place::Line(6))]);
+    assert_eq!(
+        notes(&extra),
+        [(NoteKind::FaceColor, Place::Line(5)), (NoteKind::TrailingData, Place::Line(6))]
+    );
 }
 
 #[test]
 fn off_refuses_with_the_line() {
     let refused = |text: &[u8]| refusal(read_off(text, &limits()));
-    assert_eq!(refused(b"OFF 4 0 0\n0 0 0\n"), (Place::Line(1), Malformed::Promise { what: "vertices", wanted: 4, room: 2 }));
+    assert_eq!(
+        refused(b"OFF 4 0 0\n0 0 0\n"),
+        (Place::Line(1), Malformed::Promise { what: "vertices", wanted: 4, room: 2 })
+    );
     assert_eq!(refused(b"OFF 2 0 0\n0.0 0.0 0.0\n"), (Place::Line(2), Malformed::Truncated("a vertex")));
     assert_eq!(refused(b"OFF 1 1 0\n0 0 0\n3 0 0 x\n"), (Place::Line(3), Malformed::Number("x".into())));
     assert_eq!(refused(b"PLY\n"), (Place::Line(1), Malformed::Beginning("an OFF file")));
@@ -318,7 +365,8 @@ fn off_binary_is_read_in_both_byte_orders_with_and_without_colours() {
     assert_eq!(refusal(read_off(cut, &limits())).0, Place::Byte(59));
 }
 
-const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.1\nendloop\nendfacet\n";
+const FACET: &str =
+    "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.1\nendloop\nendfacet\n";
 
 #[test]
 fn ascii_stl_is_read_in_all_its_spellings_and_digits() {
@@ -330,7 +378,11 @@ fn ascii_stl_is_read_in_all_its_spellings_and_digits() {
         format!("solid caf\u{e9}\n{}endsolid", FACET.replace("0 0 1\n", "nan inf weird\n")),
     ] {
         let loaded = read(text.as_bytes(), Format::Stl);
-        assert_eq!(loaded.soup.positions[2], dvec3(0., 1., 0.1), "no detour through single precision: {text}");
+        assert_eq!(
+            loaded.soup.positions[2],
+            dvec3(0., 1., 0.1),
+            "no detour through single precision: {text}"
+        );
         assert_eq!(loaded.soup.polygons, vec![vec![0, 1, 2]].into());
     }
     let two = read(format!("solid\n{FACET}endsolid\nsolid\n{FACET}endsolid\n").as_bytes(), Format::Stl);
@@ -358,7 +410,10 @@ fn ascii_stl_refuses_with_the_line() {
     let refused = |text: &str| refusal(read_stl(text.as_bytes(), &limits()));
     let bad = format!("solid\n{}", FACET.replace("vertex 1 0 0", "vertex 1 0 blah"));
     assert_eq!(refused(&bad), (Place::Line(5), Malformed::Number("blah".into())));
-    assert_eq!(refused("solid\nvertex 0 0 0\n"), (Place::Line(2), Malformed::Expected("a facet before its vertices")));
+    assert_eq!(
+        refused("solid\nvertex 0 0 0\n"),
+        (Place::Line(2), Malformed::Expected("a facet before its vertices"))
+    );
     assert_eq!(refused("solid\nfacet normal 0 0 1\nvertex 0 0\n").0, Place::Line(3));
     assert_eq!(refused("solid\nfacet\nfacet\n").0, Place::Line(3));
     assert_eq!(refused("solid\nfacet\nouter loop\n"), (Place::Line(3), Malformed::Truncated("a facet")));
@@ -373,13 +428,18 @@ const HEADER: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\
 fn ply_takes_what_occurs_in_files() {
     let plain = format!("{HEADER}0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     let spaced = plain.replace("element", "  element\t").replace("end_header", " end_header ");
-    let remarks = plain.replace("1 0 0\n", "comment here\n\n1 0 0 { too }\n").replace("format", "comment c\nobj_info i\nformat");
+    let remarks = plain
+        .replace("1 0 0\n", "comment here\n\n1 0 0 { too }\n")
+        .replace("format", "comment c\nobj_info i\nformat");
     for text in [plain.clone(), spaced, remarks, plain.replace('\n', "\r\n"), plain.replace('\n', "\r")] {
         let soup = read(text.as_bytes(), Format::Ply).soup;
         assert_eq!(soup.positions, [DVec3::ZERO, DVec3::X, DVec3::Y], "{text:?}");
         assert_eq!(soup.polygons, vec![vec![0, 1, 2]].into());
     }
-    for kind in ["char", "uchar", "short", "ushort", "int", "uint", "int8", "uint8", "int16", "uint16", "int32", "uint32"] {
+    for kind in [
+        "char", "uchar", "short", "ushort", "int", "uint", "int8", "uint8", "int16", "uint16", "int32",
+        "uint32",
+    ] {
         let text = plain.replace("uchar int", &format!("{kind} {kind}"));
         assert_eq!(read(text.as_bytes(), Format::Ply).soup.polygons, vec![vec![0, 1, 2]].into(), "{kind}");
     }
@@ -404,17 +464,35 @@ fn binary_ply_data_may_begin_with_a_newline() {
 fn ply_refuses_with_line_or_byte() {
     let refused = |text: &str| refusal(read_ply(text.as_bytes(), &limits()));
     let body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    assert_eq!(refused(&format!("{HEADER}0 0 0\n1 0 0\n0 1 0\n"))  , (Place::Line(12), Malformed::Truncated("the elements")));
+    assert_eq!(
+        refused(&format!("{HEADER}0 0 0\n1 0 0\n0 1 0\n")),
+        (Place::Line(12), Malformed::Truncated("the elements"))
+    );
     assert_eq!(refused(&format!("{HEADER}{}", body.replace("3 0 1 2", "4 0 1 2"))).0, Place::Line(13));
-    assert_eq!(refused(&format!("{HEADER}{}", body.replace("1 0 0", "1 a 0"))), (Place::Line(11), Malformed::Number("a".into())));
+    assert_eq!(
+        refused(&format!("{HEADER}{}", body.replace("1 0 0", "1 a 0"))),
+        (Place::Line(11), Malformed::Number("a".into()))
+    );
     assert_eq!(refused(&HEADER.replace("format ascii 1.0\n", "")).1, Malformed::Header("has no format"));
-    assert_eq!(refused(&HEADER.replace("float x", "float w")).1, Malformed::Header("gives vertices no x, y and z"));
-    assert_eq!(refused(&HEADER.replace("vertex_indices", "stuff")).1, Malformed::Header("gives faces no list of vertex indices"));
-    assert_eq!(refused("ply\nformat ascii 1.0\nelement face 0\nend_header\n").1, Malformed::Header("has no vertices"));
+    assert_eq!(
+        refused(&HEADER.replace("float x", "float w")).1,
+        Malformed::Header("gives vertices no x, y and z")
+    );
+    assert_eq!(
+        refused(&HEADER.replace("vertex_indices", "stuff")).1,
+        Malformed::Header("gives faces no list of vertex indices")
+    );
+    assert_eq!(
+        refused("ply\nformat ascii 1.0\nelement face 0\nend_header\n").1,
+        Malformed::Header("has no vertices")
+    );
     assert_eq!(refused("ply\nformat ascii 1.0\n"), (Place::Line(3), Malformed::Truncated("the header")));
     assert_eq!(refused("plz\n"), (Place::Line(1), Malformed::Beginning("a PLY file")));
     assert_eq!(refused("ply\nformat middle_endian 1.0\n").0, Place::Line(2));
-    assert_eq!(refused("ply\nproperty int x\n"), (Place::Line(2), Malformed::Header("has a property before any element")));
+    assert_eq!(
+        refused("ply\nproperty int x\n"),
+        (Place::Line(2), Malformed::Header("has a property before any element"))
+    );
     // A short header that promises gigabytes.
     let bomb = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nend_header\n";
     assert_eq!(refused(bomb).0, Place::Line(4));
@@ -443,13 +521,17 @@ fn limits_are_kept_in_every_format() {
 #[test]
 fn a_missing_file_and_an_unknown_format_are_told_apart() {
     assert!(matches!(io::read_file("no such file.obj", &limits()), Err(ReadError::Io(_))));
-    assert!(matches!(io::read_file(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"), &limits()), Err(ReadError::UnknownFormat)));
+    assert!(matches!(
+        io::read_file(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"), &limits()),
+        Err(ReadError::UnknownFormat)
+    ));
 }
 
 #[test]
 fn the_fuzz_corpora_pass() {
     let root = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus"));
-    let targets: [(&str, fn(&[u8])); 4] = [("obj", drive::obj), ("off", drive::off), ("ply", drive::ply), ("stl", drive::stl)];
+    let targets: [(&str, fn(&[u8])); 4] =
+        [("obj", drive::obj), ("off", drive::off), ("ply", drive::ply), ("stl", drive::stl)];
     for (target, run) in targets {
         let mut count = 0;
         for entry in std::fs::read_dir(root.join(target)).expect("a corpus") {

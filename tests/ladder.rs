@@ -4,8 +4,8 @@ mod shapes;
 
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    BuildDefect, FaceKey, IndexedDefect, IndexedMesh, Mesh, NormalWeight, NotClosed, PolygonSoup, Polygons, SetError,
-    VertexKey, unify_winding,
+    BuildDefect, FaceKey, IndexedDefect, IndexedMesh, Mesh, NormalWeight, NotClosed, PolygonSoup, Polygons,
+    SetError, VertexKey, unify_winding,
 };
 use proptest::prelude::*;
 use shapes::{cube, mesh, torus};
@@ -48,9 +48,8 @@ fn naive_fans(polygons: &Polygons, v: u32) -> usize {
 fn same_cycle(a: &[u32], b: &[u32]) -> bool {
     let n = b.len();
     a.len() == n
-        && (0..n).any(|k| {
-            (0..n).all(|i| a[i] == b[(k + i) % n]) || (0..n).all(|i| a[i] == b[(k + n - i) % n])
-        })
+        && (0..n)
+            .any(|k| (0..n).all(|i| a[i] == b[(k + i) % n]) || (0..n).all(|i| a[i] == b[(k + n - i) % n]))
 }
 
 fn naive_defects(pool: &IndexedMesh) -> Vec<BuildDefect> {
@@ -83,19 +82,22 @@ fn sorted(mut defects: Vec<BuildDefect>) -> Vec<String> {
 }
 
 fn pools(faces: std::ops::Range<usize>) -> impl Strategy<Value = IndexedMesh> {
-    (4u32..9, prop::collection::vec((prop::collection::vec(0u32..9, 3..6), any::<bool>()), faces)).prop_map(|(n, faces)| {
-        let points = (0..n).map(|i| dvec3(f64::from(i), f64::from(i * i), f64::from(i % 3))).collect();
-        let distinct = |(face, reversed): (Vec<u32>, bool)| {
-            let mut seen = BTreeSet::new();
-            let mut face: Vec<u32> = face.into_iter().map(|v| v % n).filter(|&v| seen.insert(v)).collect();
-            if reversed {
-                face.reverse();
-            }
-            face
-        };
-        let faces: Polygons = faces.into_iter().map(distinct).filter(|f| f.len() >= 3).collect();
-        IndexedMesh::new(points, faces).expect("a valid vertex pool")
-    })
+    (4u32..9, prop::collection::vec((prop::collection::vec(0u32..9, 3..6), any::<bool>()), faces)).prop_map(
+        |(n, faces)| {
+            let points = (0..n).map(|i| dvec3(f64::from(i), f64::from(i * i), f64::from(i % 3))).collect();
+            let distinct = |(face, reversed): (Vec<u32>, bool)| {
+                let mut seen = BTreeSet::new();
+                let mut face: Vec<u32> =
+                    face.into_iter().map(|v| v % n).filter(|&v| seen.insert(v)).collect();
+                if reversed {
+                    face.reverse();
+                }
+                face
+            };
+            let faces: Polygons = faces.into_iter().map(distinct).filter(|f| f.len() >= 3).collect();
+            IndexedMesh::new(points, faces).expect("a valid vertex pool")
+        },
+    )
 }
 
 /// Whether some choice of reversals makes all two-face edges agree: all of them are tried.
@@ -254,8 +256,11 @@ fn given_normals_come_back_from_the_mesh() {
 fn isolated_vertices_are_legal_and_keep_their_place() {
     let mut points = cube().positions().to_vec();
     points.insert(3, DVec3::splat(9.0));
-    let faces: Polygons =
-        cube().polygons().iter().map(|f| f.iter().map(|&v| v + u32::from(v >= 3)).collect::<Vec<_>>()).collect();
+    let faces: Polygons = cube()
+        .polygons()
+        .iter()
+        .map(|f| f.iter().map(|&v| v + u32::from(v >= 3)).collect::<Vec<_>>())
+        .collect();
     let pool = IndexedMesh::new(points, faces).expect("valid");
     let mesh = mesh(&pool);
     let v = mesh.vertices().nth(3).expect("nine vertices");
@@ -350,12 +355,18 @@ fn a_moebius_strip_is_refused_with_a_walk_around_it() {
 fn unify_keeps_the_winding_of_the_largest_consistent_piece() {
     let sphere = shapes::icosphere(3);
     let mixed = shapes::some_reversed(&sphere, 4, 2);
-    assert_eq!(unify_winding(&mixed.topology()).expect("orientable").value.polygons().len(), sphere.polygons().len());
+    assert_eq!(
+        unify_winding(&mixed.topology()).expect("orientable").value.polygons().len(),
+        sphere.polygons().len()
+    );
     let unified = unify_winding(&mixed.topology()).expect("orientable").value;
     assert!(unified.topology().volume().expect("closed") > 0.0, "three quarters were right");
     // Most of them reversed: then those stay.
     let reversed = mixed.reversed();
-    assert!(unify_winding(&reversed.topology()).expect("orientable").value.topology().volume().expect("closed") < 0.0);
+    assert!(
+        unify_winding(&reversed.topology()).expect("orientable").value.topology().volume().expect("closed")
+            < 0.0
+    );
 }
 
 #[test]

@@ -8,7 +8,10 @@ use shapes::{cube, grid, mesh, torus};
 use std::collections::BTreeSet;
 
 fn all() -> Vec<Mesh> {
-    let open = shapes::pool(cube().positions().to_vec(), cube().polygons().iter().skip(1).map(<[u32]>::to_vec).collect());
+    let open = shapes::pool(
+        cube().positions().to_vec(),
+        cube().polygons().iter().skip(1).map(<[u32]>::to_vec).collect(),
+    );
     [cube(), grid(4), torus(5, 4), shapes::tetrahedron(), open].iter().map(mesh).collect()
 }
 
@@ -72,7 +75,8 @@ fn a_walk_around_a_vertex_is_clockwise_and_sees_each_element_once() {
             assert!(mesh.neighbors(v).eq(out.iter().map(|&h| mesh.target(h))));
             assert!(mesh.edges_around(v).eq(out.iter().map(|&h| mesh.edge(h))));
             assert!(mesh.faces_around(v).eq(out.iter().filter_map(|&h| mesh.face(h))));
-            let faces: BTreeSet<_> = mesh.faces().filter(|&f| mesh.face_vertices(f).any(|u| u == v)).collect();
+            let faces: BTreeSet<_> =
+                mesh.faces().filter(|&f| mesh.face_vertices(f).any(|u| u == v)).collect();
             assert_eq!(mesh.faces_around(v).collect::<BTreeSet<_>>(), faces);
         }
     }
@@ -166,7 +170,8 @@ fn reversing_one_component_leaves_the_other_alone() {
 fn reversal_twice_is_the_identity_for_every_link() {
     for mut mesh in all() {
         let links = |m: &Mesh| {
-            let steps = m.halfedges().map(|h| (m.next(h), m.prev(h), m.origin(h), m.face(h))).collect::<Vec<_>>();
+            let steps =
+                m.halfedges().map(|h| (m.next(h), m.prev(h), m.origin(h), m.face(h))).collect::<Vec<_>>();
             let starts = m.vertices().map(|v| m.vertex_halfedge(v)).collect::<Vec<_>>();
             (steps, starts, m.faces().map(|f| m.face_halfedge(f)).collect::<Vec<_>>())
         };
@@ -189,7 +194,11 @@ fn get_readers_answer_none_to_dead_keys() {
     for v in [v, VertexKey::default()] {
         assert!(!mesh.contains_vertex(v));
         assert!(mesh.get_position(v).is_none() && mesh.get_normal(v).is_none());
-        assert!(mesh.get_vertex_halfedge(v).is_none() && mesh.get_outgoing(v).is_none() && mesh.get_incoming(v).is_none());
+        assert!(
+            mesh.get_vertex_halfedge(v).is_none()
+                && mesh.get_outgoing(v).is_none()
+                && mesh.get_incoming(v).is_none()
+        );
         assert!(mesh.get_neighbors(v).is_none() && mesh.get_faces_around(v).is_none());
         assert!(mesh.get_edges_around(v).is_none() && mesh.get_valence(v).is_none());
         assert!(mesh.get_is_boundary_vertex(v).is_none() && mesh.get_is_isolated(v).is_none());
@@ -208,7 +217,9 @@ fn get_readers_answer_none_to_dead_keys() {
     assert!(!mesh.contains_halfedge(h));
     assert!(mesh.get_next(h).is_none() && mesh.get_prev(h).is_none() && mesh.get_twin(h).is_none());
     assert!(mesh.get_origin(h).is_none() && mesh.get_target(h).is_none() && mesh.get_face(h).is_none());
-    assert!(mesh.get_edge(h).is_none() && mesh.get_rotate_cw(h).is_none() && mesh.get_rotate_ccw(h).is_none());
+    assert!(
+        mesh.get_edge(h).is_none() && mesh.get_rotate_cw(h).is_none() && mesh.get_rotate_ccw(h).is_none()
+    );
     assert!(mesh.get_apex(h).is_none() && mesh.get_is_boundary(h).is_none() && mesh.get_loop_of(h).is_none());
 }
 

@@ -60,7 +60,8 @@ pub(crate) fn round_trip(soup: &PolygonSoup, format: Format, encoding: Encoding)
         assert_eq!(back.polygons.len(), triangles);
         return;
     }
-    let bits = |s: &PolygonSoup| s.positions.iter().flat_map(|p| p.to_array()).map(f64::to_bits).collect::<Vec<_>>();
+    let bits =
+        |s: &PolygonSoup| s.positions.iter().flat_map(|p| p.to_array()).map(f64::to_bits).collect::<Vec<_>>();
     if !lost.contains(&Lost::IsolatedVertices) {
         assert_eq!(bits(&back), bits(soup), "{format:?} {encoding:?} keeps coordinates exactly");
         assert_eq!(back.polygons, soup.polygons, "{format:?} {encoding:?} keeps faces");

@@ -1,0 +1,382 @@
+//! The program from outside: what it prints, what it writes, and how it ends.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A directory of this test's own.
+fn directory(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).expect("a directory");
+    path
+}
+
+fn run(directory: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        .current_dir(directory)
+        .args(args)
+        .output()
+        .expect("it runs")
+}
+
+/// The exit code and the one JSON object on standard output.
+fn json(directory: &Path, args: &[&str]) -> (i32, Value) {
+    let output = run(directory, &[args, &["--json"]].concat());
+    let text = String::from_utf8(output.stdout).expect("text");
+    let value: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{args:?}: {e}: {text:?}"));
+    assert_eq!(text.lines().count(), 1, "one line");
+    let timings = value["timings_ms"].as_object().expect("timings");
+    assert_eq!(timings.keys().collect::<Vec<_>>(), ["build", "read", "run", "write"]);
+    assert!(value["peak_rss_bytes"].as_u64().expect("a number") > 0 || !cfg!(target_os = "linux"));
+    (output.status.code().expect("a code"), value)
+}
+
+fn code(directory: &Path, args: &[&str]) -> i32 {
+    run(directory, args).status.code().expect("a code")
+}
+
+/// OBJ text of unit cubes at the given corners, sharing vertices at equal places.
+fn cubes(corners: &[[i32; 3]]) -> String {
+    let mut vertices: Vec<[i32; 3]> = Vec::new();
+    let mut faces = String::new();
+    for at in corners {
+        for quad in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+            faces.push('f');
+            for i in quad {
+                let p = [at[0] + (i & 1), at[1] + (i >> 1 & 1), at[2] + (i >> 2)];
+                let index = vertices.iter().position(|q| *q == p).unwrap_or_else(|| {
+                    vertices.push(p);
+                    vertices.len() - 1
+                });
+                faces.push_str(&format!(" {}", index + 1));
+            }
+            faces.push('\n');
+        }
+    }
+    let vertices: String = vertices.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    vertices + &faces
+}
+
+const OPEN: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n";
+const MOEBIUS: &str =
+    "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 1 0 1\nv 0 1 0\nv 0 1 1\nf 1 3 4 2\nf 3 5 6 4\nf 5 2 1 6\n";
+
+#[test]
+fn inspect_prints_every_field_of_the_contract() {
+    let dir = directory("inspect");
+    fs::write(dir.join("a.obj"), cubes(&[[0, 0, 0]])).expect("written");
+    let (code, facts) = json(&dir, &["inspect", "a.obj"]);
+    assert_eq!(code, 0);
+    for (field, expected) in [
+        ("vertices", Value::from(8)),
+        ("faces", 6.into()),
+        ("used_vertices", 8.into()),
+        ("face_degrees", serde_json::json!({ "4": 6 })),
+        ("components", 1.into()),
+        ("boundary_edges", 0.into()),
+        ("boundary_loops", 0.into()),
+        ("nonmanifold_edges", 0.into()),
+        ("nonmanifold_vertices", 0.into()),
+        ("conflicting_edges", 0.into()),
+        ("degenerate_faces", 0.into()),
+        ("duplicate_faces", 0.into()),
+        ("isolated_vertices", 0.into()),
+        ("out_of_range_faces", 0.into()),
+        ("nonfinite_vertices", 0.into()),
+        ("closed", true.into()),
+        ("manifold", true.into()),
+        ("oriented", true.into()),
+        ("orientable", true.into()),
+        ("euler_characteristic", 2.into()),
+        ("genus", 0.into()),
+        ("area", 6.0.into()),
+        ("volume", 1.0.into()),
+        ("bbox", serde_json::json!({ "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0] })),
+    ] {
+        assert_eq!(facts[field], expected, "{field}");
+    }
+    fs::write(dir.join("open.obj"), OPEN).expect("written");
+    let (_, facts) = json(&dir, &["inspect", "open.obj"]);
+    assert!(facts["volume"].is_null() && facts["genus"].is_null() && facts["isolated_vertices"] == 1);
+    let text = String::from_utf8(run(&dir, &["inspect", "open.obj"]).stdout).expect("text");
+    assert!(text.contains("no, 3 naked edges in 1 pieces"), "{text}");
+}
+
+#[test]
+fn clean_prints_its_account_and_writes_it_to_files() {
+    let dir = directory("clean");
+    fs::write(dir.join("a.obj"), cubes(&[[0, 0, 0], [1, 1, 0]]) + "f 1 2 99\n").expect("written");
+    let args = ["clean", "a.obj", "-o", "b.ply", "--report", "r.json", "--maps", "m.json"];
+    let (code, account) = json(&dir, &args);
+    assert_eq!((code, &account["schema"]), (0, &Value::from(1)));
+    assert_eq!(account["counts"]["out_of_range_face"], 1);
+    assert_eq!(account["counts"]["non_manifold_edge"], 1);
+    assert_eq!(account["counts"]["pinched_vertex"], 2);
+    let first = &account["defects"][0];
+    assert_eq!((&first["kind"], &first["element"]["face"]), (&"out_of_range_face".into(), &12.into()));
+    assert!(first["place"].is_array() && account["steps"].is_array());
+    assert_eq!((&account["before"]["closed"], &account["after"]["closed"]), (&false.into(), &true.into()));
+    assert_eq!(account["after"]["volume"], 2.0);
+    assert_eq!(account["notes"][0]["place"]["line"], 27);
+    let report: Value =
+        serde_json::from_slice(&fs::read(dir.join("r.json")).expect("a report")).expect("JSON");
+    assert_eq!(report["defects"], account["defects"]);
+    let maps: Value = serde_json::from_slice(&fs::read(dir.join("m.json")).expect("maps")).expect("JSON");
+    assert_eq!(maps["faces"]["new_of"].as_array().map(Vec::len), Some(13));
+    assert_eq!(maps["faces"]["new_of"][12], serde_json::json!([]));
+    assert_eq!(maps["vertices"]["old_of"].as_array().map(Vec::len), Some(16));
+    let text = String::from_utf8(run(&dir, &args).stdout).expect("text");
+    assert!(text.contains("2 x pinched vertex: vertex"), "{text}");
+}
+
+#[test]
+fn cubes_that_touch_become_closed_cubes_of_total_volume_two() {
+    let dir = directory("touching");
+    for (name, other) in [("edge", [1, 1, 0]), ("vertex", [1, 1, 1])] {
+        fs::write(dir.join("a.obj"), cubes(&[[0, 0, 0], other])).expect("written");
+        for output in ["b.ply", "b.off", "b.obj"] {
+            let (code, account) = json(&dir, &["clean", "a.obj", "-o", output]);
+            assert_eq!((code, &account["after"]["components"]), (0, &2.into()), "{name}");
+            assert_eq!(account["after"]["volume"], 2.0);
+        }
+        let (code, measured) = json(&dir, &["volume", "b.off"]);
+        assert_eq!((code, &measured["volume"], &measured["area"]), (0, &2.0.into(), &12.0.into()));
+        assert_eq!(measured["centroid"].as_array().map(Vec::len), Some(3));
+    }
+}
+
+#[test]
+fn a_second_pass_gives_the_same_bytes_and_no_counts() {
+    let dir = directory("second_pass");
+    for (name, text) in
+        [("edge", cubes(&[[0, 0, 0], [1, 1, 0]])), ("open", OPEN.into()), ("moebius", MOEBIUS.into())]
+    {
+        fs::write(dir.join("a.obj"), text).expect("written");
+        assert_eq!(code(&dir, &["clean", "a.obj", "-o", "b.ply"]), 0);
+        let (code, account) = json(&dir, &["clean", "b.ply", "--weld", "none", "-o", "c.ply"]);
+        assert_eq!((code, &account["counts"]), (0, &serde_json::json!({})), "{name}");
+        assert_eq!(
+            fs::read(dir.join("b.ply")).expect("b"),
+            fs::read(dir.join("c.ply")).expect("c"),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn is_closed_answers_by_exit_code_and_shows_witnesses() {
+    let dir = directory("is_closed");
+    fs::write(dir.join("closed.obj"), cubes(&[[0, 0, 0]])).expect("written");
+    fs::write(dir.join("open.obj"), OPEN).expect("written");
+    fs::write(dir.join("cloud.obj"), "v 0 0 0\n").expect("written");
+    fs::write(dir.join("touch.obj"), cubes(&[[0, 0, 0], [1, 1, 0]])).expect("written");
+    assert_eq!(json(&dir, &["is-closed", "closed.obj"]).0, 0);
+    let (code, answer) = json(&dir, &["is-closed", "open.obj"]);
+    assert_eq!((code, &answer["closed"]), (1, &false.into()));
+    assert_eq!(answer["witnesses"]["boundary_edges"], serde_json::json!([[0, 1], [1, 2], [0, 2]]));
+    assert_eq!(json(&dir, &["is-closed", "cloud.obj"]).1["witnesses"]["empty"], true);
+    let (code, answer) = json(&dir, &["is-closed", "touch.obj"]);
+    assert_eq!((code, answer["witnesses"]["nonmanifold_edges"].as_array().map(Vec::len)), (1, Some(1)));
+    // Unwelded, every face is open.
+    fs::write(
+        dir.join("soup.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 6 5 4\n",
+    )
+    .expect("written");
+    let edges = |weld: &str| {
+        let answer = json(&dir, &["is-closed", "soup.obj", "--weld", weld]).1;
+        answer["witnesses"]["boundary_edges"].as_array().map(Vec::len)
+    };
+    assert_eq!((edges("none"), edges("exact"), edges("0.5")), (Some(6), Some(4), Some(4)));
+}
+
+#[test]
+fn naked_edges_are_loops_in_the_files_numbering() {
+    let dir = directory("naked");
+    fs::write(dir.join("a.obj"), format!("v 9 9 9\nv 9 9 9\n{}", OPEN.replace("f 1 2 3", "f 3 4 5")))
+        .expect("written");
+    let (code, naked) = json(&dir, &["naked-edges", "a.obj"]);
+    assert_eq!(
+        (code, &naked["loops"], &naked["chains"]),
+        (0, &serde_json::json!([[3, 2, 4]]), &serde_json::json!([]))
+    );
+    fs::write(
+        dir.join("fins.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 2 1 5\n",
+    )
+    .expect("written");
+    let (code, naked) = json(&dir, &["naked-edges", "fins.obj"]);
+    assert_eq!((code, naked["chains"].as_array().map(Vec::len)), (0, Some(3)));
+}
+
+#[test]
+fn volume_of_an_open_mesh_is_refused() {
+    let dir = directory("volume");
+    fs::write(dir.join("open.obj"), OPEN).expect("written");
+    let (code, answer) = json(&dir, &["volume", "open.obj"]);
+    assert_eq!(
+        (code, &answer["error"]["kind"], &answer["boundary_edges"]),
+        (1, &"refused".into(), &3.into())
+    );
+}
+
+#[test]
+fn unify_flips_and_tells_or_shows_the_cycle() {
+    let dir = directory("unify");
+    fs::write(dir.join("a.obj"), cubes(&[[0, 0, 0]]).replace("f 1 2 3 4", "f 4 3 2 1")).expect("written");
+    let (code, answer) = json(&dir, &["unify", "a.obj", "-o", "b.obj"]);
+    assert_eq!((code, &answer["flipped"]), (0, &serde_json::json!([0])));
+    assert_eq!(json(&dir, &["inspect", "b.obj"]).1["volume"], 1.0);
+    fs::write(dir.join("m.obj"), MOEBIUS).expect("written");
+    let (code, answer) = json(&dir, &["unify", "m.obj", "-o", "never.obj"]);
+    assert_eq!((code, answer["cycles"][0].as_array().map(Vec::len)), (1, Some(3)));
+    assert!(!dir.join("never.obj").exists());
+}
+
+#[test]
+fn flip_reverses_and_convert_keeps() {
+    let dir = directory("convert");
+    fs::write(dir.join("a.obj"), cubes(&[[0, 0, 0]])).expect("written");
+    assert_eq!(json(&dir, &["flip", "a.obj", "-o", "b.ply"]).0, 0);
+    assert_eq!(json(&dir, &["inspect", "b.ply"]).1["volume"], -1.0);
+    for (name, ascii) in [("c.stl", false), ("c.stl", true), ("c.ply", true), ("c.off", false)] {
+        let args = ["convert", "a.obj", "-o", name];
+        let (code, answer) =
+            json(&dir, &if ascii { [&args[..], &["--ascii"]].concat() } else { args.to_vec() });
+        assert_eq!(
+            (code, &answer["faces"], &answer["import"]["counts"]),
+            (0, &6.into(), &serde_json::json!({}))
+        );
+        assert_eq!(json(&dir, &["inspect", name]).1["volume"], 1.0, "{name}");
+        assert_eq!(fs::read(dir.join(name)).expect("a file").starts_with(b"solid"), name == "c.stl" && ascii);
+    }
+}
+
+#[test]
+fn strict_refuses_what_the_import_would_change() {
+    let dir = directory("strict");
+    fs::write(dir.join("bad.obj"), cubes(&[[0, 0, 0], [1, 1, 0]])).expect("written");
+    fs::write(dir.join("range.obj"), format!("{OPEN}f 1 2 9\n")).expect("written");
+    for (name, kind) in [("bad.obj", "non_manifold_edge"), ("range.obj", "out_of_range_face")] {
+        assert_eq!(json(&dir, &["convert", name, "-o", "c.off"]).0, 0);
+        let (code, answer) = json(&dir, &["convert", name, "-o", "never.off", "--strict"]);
+        assert_eq!(code, 1);
+        assert!(answer["defects"][0].to_string().contains(kind), "{answer}");
+        assert!(!dir.join("never.off").exists());
+    }
+    fs::write(dir.join("good.obj"), cubes(&[[0, 0, 0]])).expect("written");
+    assert_eq!(code(&dir, &["volume", "good.obj", "--strict"]), 0);
+}
+
+#[test]
+fn wrong_usage_is_two() {
+    let dir = directory("usage");
+    fs::write(dir.join("a.obj"), OPEN).expect("written");
+    for args in [
+        &["inspect"][..],
+        &["frobnicate", "a.obj"],
+        &["inspect", "a.obj", "--depth", "3"],
+        &["clean", "a.obj"],
+        &["clean", "a.obj", "-o", "b.xyz"],
+        &["clean", "a.obj", "-o", "b.ply", "--weld", "some"],
+        &["clean", "a.obj", "-o", "b.ply", "--profile", "solid"],
+        &["clean", "a.obj", "-o", "b.ply", "--debris", "3"],
+        &["unify", "a.obj", "-o", "b.ply", "--outward"],
+        &["inspect", "a.obj", "--weld", "auto"],
+        &["inspect", "a.obj", "--threads", "0"],
+    ] {
+        assert_eq!(code(&dir, args), 2, "{args:?}");
+    }
+    assert_eq!(code(&dir, &["--help"]), 0);
+    assert_eq!(code(&dir, &["--version"]), 0);
+    assert_eq!(code(&dir, &["inspect", "a.obj", "--threads", "1"]), 0);
+}
+
+#[test]
+fn a_senseless_tolerance_is_one_though_it_begins_with_a_minus() {
+    let dir = directory("tolerance");
+    fs::write(dir.join("a.obj"), OPEN).expect("written");
+    let (code, answer) = json(&dir, &["clean", "a.obj", "-o", "b.ply", "--weld", "-1"]);
+    assert_eq!((code, &answer["error"]["kind"]), (1, &"refused".into()));
+    assert!(!dir.join("b.ply").exists());
+}
+
+#[test]
+fn unreadable_input_is_three_with_its_place() {
+    let dir = directory("unreadable");
+    fs::write(dir.join("bad.obj"), "v 0 0 0\nv 1 x 0\n").expect("written");
+    let (code, answer) = json(&dir, &["inspect", "bad.obj"]);
+    assert_eq!((code, &answer["error"]["line"]), (3, &2.into()));
+    fs::write(dir.join("bad.ply"), "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar uchar vertex_index\nend_header\n123456789012\u{5}ab").expect("written");
+    let (code, answer) = json(&dir, &["clean", "bad.ply", "-o", "c.ply"]);
+    assert_eq!((code, answer["error"]["byte"].is_u64()), (3, true));
+    let message = String::from_utf8(run(&dir, &["inspect", "bad.obj"]).stderr).expect("text");
+    assert!(message.contains("bad.obj: line 2: \"x\" is not a number"), "{message}");
+    assert_eq!(json(&dir, &["inspect", "missing.obj"]).0, 3);
+    fs::write(dir.join("what"), "hello").expect("written");
+    assert_eq!(json(&dir, &["inspect", "what"]).0, 3);
+    // Content tells where the name does not.
+    fs::write(dir.join("nameless"), OPEN).expect("written");
+    assert_eq!(json(&dir, &["inspect", "nameless"]).0, 0);
+}
+
+#[test]
+fn output_that_cannot_be_written_is_four_and_leaves_nothing() {
+    let dir = directory("unwritable");
+    fs::write(dir.join("a.obj"), OPEN).expect("written");
+    let (code, answer) = json(&dir, &["clean", "a.obj", "-o", "no/such/place.ply"]);
+    assert_eq!((code, &answer["error"]["kind"]), (4, &"output".into()));
+    fs::create_dir(dir.join("taken.ply")).expect("a directory");
+    assert_eq!(json(&dir, &["convert", "a.obj", "-o", "taken.ply"]).0, 4);
+    let names: Vec<_> =
+        fs::read_dir(&dir).expect("listed").map(|e| e.expect("an entry").file_name()).collect();
+    assert_eq!(names.len(), 2, "no part is left behind: {names:?}");
+}
+
+#[test]
+fn a_file_may_be_replaced_by_its_own_result() {
+    let dir = directory("in_place");
+    fs::write(dir.join("a.obj"), cubes(&[[0, 0, 0]])).expect("written");
+    assert_eq!(code(&dir, &["flip", "a.obj", "-o", "a.obj"]), 0);
+    assert_eq!(json(&dir, &["volume", "a.obj"]).1["volume"], -1.0);
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let dir = directory("pipe");
+    fs::write(dir.join("a.obj"), OPEN).expect("written");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        .current_dir(&dir)
+        .args(["inspect", "a.obj"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("it runs");
+    drop(child.stdout.take());
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+}
+
+#[test]
+fn malformed_corpus_files_end_well_within_ten_seconds_and_a_gibibyte() {
+    let Some(corpus) = std::env::var_os("MESHWRIGHT_CORPUS") else {
+        eprintln!("MESHWRIGHT_CORPUS is not set: no corpus, nothing run");
+        return;
+    };
+    let dir = directory("malformed");
+    let mut count = 0;
+    for entry in fs::read_dir(Path::new(&corpus).join("malformed")).expect("a corpus") {
+        let file = entry.expect("an entry").path();
+        let file = file.to_str().expect("a plain name");
+        for args in [vec!["inspect", file], vec!["clean", file, "-o", "out.ply"]] {
+            let start = std::time::Instant::now();
+            let (code, answer) = json(&dir, &args);
+            assert!([0, 1, 3].contains(&code), "{args:?}: {code}");
+            assert!(start.elapsed().as_secs() < 10, "{args:?} hangs");
+            assert!(answer["peak_rss_bytes"].as_u64().is_some_and(|b| b < 1 << 30), "{args:?}");
+            count += 1;
+        }
+    }
+    assert!(count > 100);
+}
