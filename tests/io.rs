@@ -530,7 +530,8 @@ fn a_missing_file_and_an_unknown_format_are_told_apart() {
 #[test]
 fn the_fuzz_corpora_pass() {
     let root = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus"));
-    let targets: [(&str, fn(&[u8])); 4] =
+    type Target = (&'static str, fn(&[u8]));
+    let targets: [Target; 4] =
         [("obj", drive::obj), ("off", drive::off), ("ply", drive::ply), ("stl", drive::stl)];
     for (target, run) in targets {
         let mut count = 0;
