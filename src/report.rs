@@ -119,6 +119,22 @@ named! {
     }
 }
 
+named! {
+    /// Data beside positions and faces.
+    Attribute {
+        /// Given normals of vertices.
+        VertexNormals = "vertex_normals",
+        /// Colours of vertices.
+        VertexColors = "vertex_colors",
+        /// Normals of corners.
+        CornerNormals = "corner_normals",
+        /// Texture coordinates of corners.
+        TextureCoordinates = "texture_coordinates",
+        /// Groups and materials.
+        Groups = "groups",
+    }
+}
+
 /// One change, with its element in the input's numbering and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -154,6 +170,8 @@ pub struct Report {
     pub steps: Vec<StepSummary>,
     /// The changes, in the order of the steps, and by element within a step.
     pub records: Vec<Record>,
+    /// Data of the input that the result does not have.
+    pub not_carried: Vec<Attribute>,
 }
 
 impl Report {

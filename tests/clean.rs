@@ -6,7 +6,7 @@ mod shapes;
 
 use meshwright::cleanup::{CleanError, CleanOptions, Weld, clean, index, inspect};
 use meshwright::glam::{DVec3, dvec3};
-use meshwright::{Cancelled, Control, Element, Kind, Mesh, Outcome, PolygonSoup, Polygons, Step};
+use meshwright::{Attribute, Cancelled, Control, Element, Kind, Mesh, Outcome, PolygonSoup, Polygons, Step};
 use shapes::{both, cube, cube_at, soup, unwelded};
 use std::ops::ControlFlow;
 
@@ -353,6 +353,18 @@ fn given_normals_are_carried() {
     pair.vertex_normals = vec![DVec3::Z; pair.positions.len()];
     let outcome = cleaned(&pair);
     assert!(outcome.value.vertices().all(|v| outcome.value.normal(v) == Some(DVec3::Z)));
+}
+
+#[test]
+fn normals_that_differ_where_vertices_merge_are_not_carried_and_that_is_said() {
+    let mut soup = unwelded(&cube());
+    soup.vertex_normals = (0..24).map(|i| if i < 12 { DVec3::Z } else { DVec3::X }).collect();
+    soup.vertex_colors = vec![[1.0; 4]; 24];
+    let outcome = cleaned(&soup);
+    assert_eq!(outcome.report.not_carried, [Attribute::VertexNormals, Attribute::VertexColors]);
+    assert!(outcome.value.to_indexed().normals().is_none());
+    soup.vertex_normals = vec![DVec3::Z; 24];
+    assert_eq!(cleaned(&soup).report.not_carried, [Attribute::VertexColors]);
 }
 
 #[test]

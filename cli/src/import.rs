@@ -37,7 +37,13 @@ pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(
 
 /// What the import changed, for `"import"`.
 pub(crate) fn import_json(loaded: &Loaded, report: &Report) -> Value {
-    json!({ "notes": loaded.notes, "counts": report.counts(), "defects": report.records, "steps": report.steps })
+    json!({
+        "notes": loaded.notes,
+        "counts": report.counts(),
+        "defects": report.records,
+        "steps": report.steps,
+        "not_carried": report.not_carried,
+    })
 }
 
 fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> {
@@ -92,6 +98,10 @@ pub(crate) fn changes(report: &Report) -> Vec<String> {
         let shown: Vec<String> = records.map(|r| r.element.to_string()).collect();
         let more = if count > SHOWN { format!(" and {} more", count - SHOWN) } else { String::new() };
         lines.push(format!("{count} x {}: {}{more}", kind.as_str().replace('_', " "), shown.join(", ")));
+    }
+    if !report.not_carried.is_empty() {
+        let names: Vec<String> = report.not_carried.iter().map(|a| a.as_str().replace('_', " ")).collect();
+        lines.push(format!("not carried: {}", names.join(", ")));
     }
     lines
 }

@@ -103,7 +103,7 @@ pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
     }
     facts.isolated_vertices = named.iter().filter(|n| !**n).count();
 
-    let indexed = pool.lend();
+    let indexed = pool.lend(None);
     let topology = indexed.topology();
     let ((components, pieces), pinched) =
         both(|| (topology.components().1, topology.boundary_pieces()), || topology.pinched_vertices().len());

@@ -86,7 +86,8 @@ pub enum CleanError {
 /// open; vertices split so that each has one fan. A soup without defects comes out as it is, with an empty record.
 ///
 /// Vertices keep the soup's order (the lowest of those merged counts), and so do faces; what a split adds comes last.
-/// Given vertex normals are carried from the lowest of the merged vertices. Splits leave coincident vertices: clean the
+/// Given vertex normals are carried unless vertices with different ones were merged; what else the soup holds beside
+/// positions and faces is not, and [`Report::not_carried`](crate::Report::not_carried) says so. Splits leave coincident vertices: clean the
 /// result with [`Weld::None`], and nothing changes.
 ///
 /// O(n log n) in the corners at worst, linear without defects.
@@ -116,7 +117,8 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
     if matching.more.is_empty() && !matching.any_conflict {
         // Most files need no more: try before working out what is wrong.
         control.report("build", 0.5)?;
-        let indexed = pool.lend();
+        let normals = pool.welded_normals();
+        let indexed = pool.lend(normals);
         if let Some(value) = assemble(&indexed, &matching) {
             pool.take_back(indexed);
             let (report, maps) = pool.account();
@@ -139,7 +141,8 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
     pool.report.records.sort_by_key(|r| r.step);
     control.report("build", 0.9)?;
     pool.positions = positions;
-    let value = Mesh::build(&pool.lend()).map_err(CleanError::Bug)?;
+    let normals = pool.normals(|v| maps.vertices.new_of(v));
+    let value = Mesh::build(&pool.lend(normals)).map_err(CleanError::Bug)?;
     Ok(Outcome { value, report: pool.report, maps })
 }
 
@@ -150,7 +153,8 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
 /// [`CleanError`]: never because of what the soup holds.
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
     let mut pool = Pool::new(soup, weld)?;
-    let value = pool.lend();
+    let normals = pool.welded_normals();
+    let value = pool.lend(normals);
     pool.positions = value.positions().to_vec();
     let (report, maps) = pool.account();
     Ok(Outcome { value, report, maps })

@@ -4,7 +4,7 @@ use super::polygons::{PolygonRepair, Repair};
 use super::weld::{propose_tolerance, weld};
 use super::{CleanError, Weld};
 use crate::matching::NONE;
-use crate::report::{Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
+use crate::report::{Attribute, Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
 use crate::{IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
 use glam::DVec3;
 
@@ -196,20 +196,43 @@ impl<'s> Pool<'s> {
         self.report.records.splice(before..before, merges.collect::<Vec<_>>());
     }
 
-    /// Given normals of the kept vertices, if the soup has one finite normal for each.
-    pub(super) fn normals(&self) -> Option<Vec<DVec3>> {
+    /// Given normals, if the soup has one for each vertex, finite where it is kept, and no two that became one differ.
+    /// `new_of` gives what became of the soup's vertices.
+    pub(super) fn normals<'n>(&self, new_of: impl Fn(usize) -> &'n [u32]) -> Option<Vec<DVec3>> {
         let given = &self.soup.vertex_normals;
-        let usable = given.len() == self.soup.positions.len() && !given.is_empty();
-        usable.then(|| {
-            let finite = |v: &u32| Some(given[*v as usize]).filter(|n| n.is_finite()).unwrap_or(DVec3::ZERO);
-            self.vertex_source.iter().map(finite).collect()
+        if given.is_empty() || given.len() != self.soup.positions.len() {
+            return None;
+        }
+        let kept: Vec<DVec3> = self.vertex_source.iter().map(|&v| given[v as usize]).collect();
+        let agree = |(v, n): (usize, &DVec3)| new_of(v).iter().all(|&new| kept[new as usize] == *n);
+        (kept.iter().all(|n| n.is_finite()) && given.iter().enumerate().all(agree)).then_some(kept)
+    }
+
+    /// Given normals of the vertices as they were welded.
+    pub(super) fn welded_normals(&self) -> Option<Vec<DVec3>> {
+        self.normals(|v| match self.vertex_of[v] {
+            NONE => &[],
+            _ => std::slice::from_ref(&self.vertex_of[v]),
         })
     }
 
-    /// The pool as it stands, its positions and faces moved out.
-    pub(super) fn lend(&mut self) -> IndexedMesh {
+    /// The pool as it stands, its positions and faces moved out, with the normals it is to carry.
+    pub(super) fn lend(&mut self, normals: Option<Vec<DVec3>>) -> IndexedMesh {
+        self.report.not_carried = self.not_carried(normals.is_some());
         let (positions, polygons) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.polygons));
-        IndexedMesh::trusted(positions, polygons, self.normals())
+        IndexedMesh::trusted(positions, polygons, normals)
+    }
+
+    fn not_carried(&self, normals: bool) -> Vec<Attribute> {
+        let soup = self.soup;
+        let present = [
+            (Attribute::VertexNormals, !soup.vertex_normals.is_empty() && !normals),
+            (Attribute::VertexColors, !soup.vertex_colors.is_empty()),
+            (Attribute::CornerNormals, soup.corner_normals.is_some()),
+            (Attribute::TextureCoordinates, soup.corner_uvs.is_some()),
+            (Attribute::Groups, !soup.groups.is_empty()),
+        ];
+        present.into_iter().filter(|p| p.1).map(|p| p.0).collect()
     }
 
     /// Takes positions and faces back.

@@ -31,6 +31,7 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         "defects": report.records,
         "counts": report.counts(),
         "steps": report.steps,
+        "not_carried": report.not_carried,
         "before": before,
         "after": after,
         "notes": loaded.notes,
