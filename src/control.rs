@@ -19,8 +19,8 @@ pub struct Cancelled;
 
 /// The progress-and-cancel hook of a long call. The default watches nothing and never cancels.
 ///
-/// The hook is called from the calling thread, a few times a second at most on the work this crate does, and at
-/// least once per stage.
+/// The hook is called from the calling thread: at the beginning of every stage, and within stages that walk all elements
+/// about every half million of them.
 ///
 /// # Examples
 /// ```

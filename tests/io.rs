@@ -258,6 +258,15 @@ fn obj_keeps_bad_faces_in_their_place_and_notes_them() {
 }
 
 #[test]
+fn obj_notes_vertices_without_a_colour_beside_some_that_have_one() {
+    for (text, line) in [("v 0 0 0\nv 1 0 0 1 0 0\n", 2), ("v 0 0 0 1 0 0\nv 1 0 0\n", 1)] {
+        let loaded = read(text.as_bytes(), Format::Obj);
+        assert!(loaded.soup.vertex_colors.contains(&[1.0; 4]));
+        assert_eq!(notes(&loaded), [(NoteKind::MissingColor, Place::Line(line))]);
+    }
+}
+
+#[test]
 fn obj_keeps_coordinates_that_are_not_finite_and_notes_them() {
     let loaded = read(b"v nan -inf 1.#IND\nv 1e400 0 0\nv -1.#INF 0 0\nv 0 0 0\n", Format::Obj);
     let p = &loaded.soup.positions;
@@ -443,6 +452,10 @@ fn ply_takes_what_occurs_in_files() {
         let text = plain.replace("uchar int", &format!("{kind} {kind}"));
         assert_eq!(read(text.as_bytes(), Format::Ply).soup.polygons, vec![vec![0, 1, 2]].into(), "{kind}");
     }
+    for bad in ["3 0 1.5 2", "3 0 nan 2", "2.5 0 1 2"] {
+        let text = plain.replace("3 0 1 2", bad);
+        assert_eq!(refusal(read_ply(text.as_bytes(), &limits())).0, Place::Line(13), "{bad}");
+    }
     let negative = read(plain.replace("3 0 1 2", "3 0 -1 9").as_bytes(), Format::Ply);
     assert_eq!(negative.soup.polygons, vec![vec![0, PolygonSoup::NO_VERTEX, 9]].into());
     assert_eq!(notes(&negative), [(NoteKind::IndexOutOfRange, Place::Line(13))]);
@@ -521,6 +534,12 @@ fn limits_are_kept_in_every_format() {
 #[test]
 fn a_missing_file_and_an_unknown_format_are_told_apart() {
     assert!(matches!(io::read_file("no such file.obj", &limits()), Err(ReadError::Io(_))));
+    let few = Limits { bytes: 100, ..limits() };
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/broken_bracket.obj");
+    assert!(matches!(io::read_file(sample, &few), Err(ReadError::Limit { what: "bytes", allowed: 100, .. })));
+    if cfg!(unix) {
+        assert!(matches!(io::read_file("/dev/zero", &few), Err(ReadError::Limit { what: "bytes", .. })));
+    }
     assert!(matches!(
         io::read_file(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"), &limits()),
         Err(ReadError::UnknownFormat)

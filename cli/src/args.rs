@@ -1,10 +1,11 @@
 //! What can be asked for.
 
+use crate::session::Failure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use meshwright::cleanup::Weld;
 use meshwright::io::Format;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Inspect, clean and convert meshes (OBJ, STL, PLY, OFF).
 ///
@@ -131,24 +132,19 @@ pub(crate) struct Strict {
 #[derive(Debug, Args)]
 pub(crate) struct Output {
     /// Write the result here, whole or not at all; the extension names the format
-    #[arg(short, long, value_name = "FILE", value_parser = output)]
-    pub(crate) output: Destination,
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
     /// Write text where the format offers a choice (PLY, STL)
     #[arg(long)]
     pub(crate) ascii: bool,
 }
 
-/// A file to be written, with its format.
-#[derive(Clone, Debug)]
-pub(crate) struct Destination {
-    pub(crate) path: PathBuf,
-    pub(crate) format: Format,
-}
-
-fn output(word: &str) -> Result<Destination, String> {
-    let path = Path::new(word).to_owned();
-    let format = Format::from_path(&path).ok_or("the extension must be .obj, .stl, .ply or .off")?;
-    Ok(Destination { path, format })
+impl Output {
+    /// The format that the extension names.
+    pub(crate) fn format(&self) -> Result<Format, Failure> {
+        let message = || format!("{}: the extension must be .obj, .stl, .ply or .off", self.output.display());
+        Format::from_path(&self.output).ok_or_else(|| Failure::Usage(message()))
+    }
 }
 
 fn weld(word: &str) -> Result<Weld, String> {

@@ -15,17 +15,16 @@ pub(crate) fn write_mesh(
     output: &Output,
     soup: &PolygonSoup,
 ) -> Result<Vec<Lost>, Failure> {
-    let destination = &output.output;
+    let (path, format) = (&output.output, output.format()?);
     let encoding = if output.ascii { Encoding::Ascii } else { Encoding::Binary };
-    let lost = session.timed(Phase::Write, || {
-        whole_or_not_at_all(&destination.path, |sink| io::write(soup, destination.format, encoding, sink))
-    });
+    let lost = session
+        .timed(Phase::Write, || whole_or_not_at_all(path, |sink| io::write(soup, format, encoding, sink)));
     let lost = lost.map_err(|error| match error {
-        WriteError::Io(error) => Failure::Output(format!("{}: {error}", destination.path.display())),
-        refused => Failure::refused(format!("{}: {refused}", destination.path.display())),
+        WriteError::Io(error) => Failure::Output(format!("{}: {error}", path.display())),
+        refused => Failure::refused(format!("{}: {refused}", path.display())),
     })?;
     for kind in &lost {
-        session.say(&format!("{} cannot hold {kind}", destination.path.display()));
+        session.say(&format!("{} cannot hold {kind}", path.display()));
     }
     Ok(lost)
 }

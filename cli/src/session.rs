@@ -21,6 +21,8 @@ pub(crate) struct Answer {
 /// Why there is no answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
+    /// The request makes no sense (exit code 2).
+    Usage(String),
     /// The input cannot be read (exit code 3).
     Input { message: String, place: Option<Place> },
     /// The output cannot be written (exit code 4).
@@ -100,6 +102,7 @@ impl Session {
             Err(failure) => {
                 let (code, kind, message, mut json, place) = match failure {
                     Failure::Refused { message, json } => (1, "refused", message, json, None),
+                    Failure::Usage(message) => (2, "usage", message, Map::new(), None),
                     Failure::Input { message, place } => (3, "input", message, Map::new(), place),
                     Failure::Output(message) => (4, "output", message, Map::new(), None),
                 };

@@ -335,6 +335,20 @@ fn output_that_cannot_be_written_is_four_and_leaves_nothing() {
     assert_eq!(names.len(), 2, "no part is left behind: {names:?}");
 }
 
+#[cfg(unix)]
+#[test]
+fn names_that_are_no_text_are_taken() {
+    use std::os::unix::ffi::OsStrExt;
+    let dir = directory("names");
+    let [from, to] = [&b"a\xFF.obj"[..], b"b\xFF.ply"].map(std::ffi::OsStr::from_bytes);
+    fs::write(dir.join(from), OPEN).expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshwright"));
+    let status =
+        command.current_dir(&dir).arg("convert").arg(from).arg("-o").arg(to).stderr(Stdio::null()).status();
+    assert_eq!(status.expect("it runs").code(), Some(0));
+    assert!(dir.join(to).exists());
+}
+
 #[test]
 fn a_file_may_be_replaced_by_its_own_result() {
     let dir = directory("in_place");

@@ -2,10 +2,10 @@
 
 use super::pool::Pool;
 use super::{CleanError, Weld};
-use crate::PolygonSoup;
 use crate::geometry::measure::{Aabb, measures};
 use crate::parallel::both;
 use crate::report::Kind;
+use crate::{Control, PolygonSoup};
 use std::collections::BTreeMap;
 
 /// What [`inspect`] finds: the facts of a soup after welding, nothing repaired.
@@ -80,7 +80,7 @@ pub struct Facts {
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
-    let mut pool = Pool::new(soup, weld)?;
+    let mut pool = Pool::new(soup, weld, &mut Control::none())?;
     let count = |kind| pool.report.count(kind);
     let mut facts = Facts {
         vertices: soup.positions.len(),

@@ -110,8 +110,7 @@ pub enum CleanError {
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
     let Profile::Preserve = options.profile;
     let mut control = options.control;
-    control.report("weld", 0.0)?;
-    let mut pool = Pool::new(soup, options.weld)?;
+    let mut pool = Pool::new(soup, options.weld, &mut control)?;
     control.report("match edges", 0.4)?;
     let mut matching = Matching::new(pool.positions.len(), &pool.polygons);
     if matching.more.is_empty() && !matching.any_conflict {
@@ -152,7 +151,7 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
-    let mut pool = Pool::new(soup, weld)?;
+    let mut pool = Pool::new(soup, weld, &mut Control::none())?;
     let normals = pool.welded_normals();
     let value = pool.lend(normals);
     pool.positions = value.positions().to_vec();

@@ -5,7 +5,7 @@ use super::weld::{propose_tolerance, weld};
 use super::{CleanError, Weld};
 use crate::matching::NONE;
 use crate::report::{Attribute, Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
-use crate::{IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
+use crate::{Cancelled, Control, IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
 use glam::DVec3;
 
 /// A valid vertex pool on its way to a mesh, with its origins in the soup.
@@ -44,7 +44,11 @@ pub(super) fn invalid(soup: &PolygonSoup, face: &[u32]) -> Option<Kind> {
 
 impl<'s> Pool<'s> {
     /// Drops what is invalid, welds, repairs polygons.
-    pub(super) fn new(soup: &'s PolygonSoup, how: Weld) -> Result<Self, CleanError> {
+    pub(super) fn new(
+        soup: &'s PolygonSoup,
+        how: Weld,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
         let elements = soup.positions.len().max(soup.polygons.len()).max(soup.polygons.corners().len());
         if elements > MAX_ELEMENTS {
             return Err(CleanError::TooLarge { elements });
@@ -55,7 +59,7 @@ impl<'s> Pool<'s> {
             Weld::Auto => Some(propose_tolerance(soup)),
             Weld::Within(t) => Some(t),
         };
-        let merged_into = weld(&soup.positions, tolerance)?;
+        let merged_into = weld(&soup.positions, tolerance, control)?;
         let mut pool = Self {
             soup,
             positions: Vec::new(),
@@ -70,7 +74,12 @@ impl<'s> Pool<'s> {
         };
         let dropped = pool.number_vertices();
         let merged = soup.positions.len() - dropped - pool.positions.len();
-        let repairs = pool.take_faces(dropped);
+        let repairs = pool.take_faces(dropped, control)?;
+        let elements = pool.corner_source.len();
+        if elements > MAX_ELEMENTS {
+            // Cutting faces into triangles can triple their corners.
+            return Err(CleanError::TooLarge { elements });
+        }
         let step = |step, changed, tolerance| StepSummary { step, changed, tolerance };
         if pool.tolerance.is_some() {
             pool.report.steps.push(step(Step::Weld, merged, pool.tolerance));
@@ -102,13 +111,20 @@ impl<'s> Pool<'s> {
     }
 
     /// Takes over the valid faces and repairs them; returns the records of repairs.
-    fn take_faces(&mut self, dropped_vertices: usize) -> Vec<Record> {
+    fn take_faces(
+        &mut self,
+        dropped_vertices: usize,
+        control: &mut Control<'_>,
+    ) -> Result<Vec<Record>, Cancelled> {
         let soup = self.soup;
         let mut repairs = Vec::new();
         let mut repair = PolygonRepair::default();
         let (mut welded, mut pieces) = (Vec::new(), Polygons::new());
         let mut dropped = dropped_vertices;
         for (f, face) in soup.polygons.iter().enumerate() {
+            if f.is_multiple_of(1 << 19) {
+                control.report("repair faces", 0.3 + 0.1 * f as f64 / soup.polygons.len() as f64)?;
+            }
             let element = Element::Face(f as u32);
             if let Some(kind) = invalid(soup, face) {
                 dropped += 1;
@@ -135,7 +151,7 @@ impl<'s> Pool<'s> {
             }
         }
         self.report.steps.push(StepSummary { step: Step::DropInvalid, changed: dropped, tolerance: None });
-        repairs
+        Ok(repairs)
     }
 
     pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {

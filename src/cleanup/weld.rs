@@ -1,8 +1,8 @@
 //! Which vertices become one: at equal coordinates, or within a tolerance.
 
 use super::CleanError;
-use crate::PolygonSoup;
 use crate::matching::NONE;
+use crate::{Cancelled, Control, PolygonSoup};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::collections::HashMap;
@@ -24,14 +24,18 @@ pub fn propose_tolerance(soup: &PolygonSoup) -> f64 {
 }
 
 /// For each position the lowest index it is merged into (itself if it stays); [`NONE`] if it is not finite.
-pub(super) fn weld(positions: &[DVec3], tolerance: Option<f64>) -> Result<Vec<u32>, CleanError> {
+pub(super) fn weld(
+    positions: &[DVec3],
+    tolerance: Option<f64>,
+    control: &mut Control<'_>,
+) -> Result<Vec<u32>, CleanError> {
     match tolerance {
         None => {
             let own = positions.iter().zip(0..);
             Ok(own.map(|(p, i)| if p.is_finite() { i } else { NONE }).collect())
         }
-        Some(0.0) => Ok(exact(positions).unwrap_or_else(|| exact_by_sorting(positions))),
-        Some(t) if t > 0.0 && t.is_finite() => Ok(within(positions, t)),
+        Some(0.0) => Ok(exact(positions, control)?.unwrap_or_else(|| exact_by_sorting(positions))),
+        Some(t) if t > 0.0 && t.is_finite() => Ok(within(positions, t, control)?),
         Some(t) => Err(CleanError::BadTolerance(t)),
     }
 }
@@ -43,13 +47,14 @@ fn bits(p: DVec3) -> [u64; 3] {
 
 /// Open addressing in the order of vertices, so the first of equals is found by the rest. `None` if probes run long: a
 /// file made to do so must not cost quadratic time.
-fn exact(positions: &[DVec3]) -> Option<Vec<u32>> {
+fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Vec<u32>>, Cancelled> {
     const LONGEST_PROBE: usize = 256;
     let size = (positions.len() * 2).next_power_of_two().max(2);
     let shift = 64 - size.trailing_zeros();
     let mut table = vec![NONE; size];
     let mut merged = Vec::with_capacity(positions.len());
     for (i, &p) in positions.iter().enumerate() {
+        tick(control, i, positions.len())?;
         if !p.is_finite() {
             merged.push(NONE);
             continue;
@@ -64,7 +69,7 @@ fn exact(positions: &[DVec3]) -> Option<Vec<u32>> {
                 }
                 // Equality of floats takes -0 for 0.
                 j if positions[j as usize] == p => break j,
-                _ if probes == LONGEST_PROBE => return None,
+                _ if probes == LONGEST_PROBE => return Ok(None),
                 _ => {
                     probes += 1;
                     slot = (slot + 1) & (size - 1);
@@ -73,7 +78,12 @@ fn exact(positions: &[DVec3]) -> Option<Vec<u32>> {
         };
         merged.push(kept);
     }
-    Some(merged)
+    Ok(Some(merged))
+}
+
+/// Reports now and then; the weld is the first three tenths of a clean-up.
+fn tick(control: &mut Control<'_>, done: usize, of: usize) -> Result<(), Cancelled> {
+    if done.is_multiple_of(1 << 19) { control.report("weld", 0.3 * done as f64 / of as f64) } else { Ok(()) }
 }
 
 /// Folded multiplication: all bits of the coordinates reach the high bits, from which the slot is taken.
@@ -108,7 +118,7 @@ pub(super) fn is_near(p: DVec3, q: DVec3, tolerance: f64) -> bool {
 /// The tutorial's greedy rule (each vertex joins the lowest kept vertex nearer than the tolerance, and is kept if there
 /// is none) in linear time: kept vertices are at least a tolerance apart, so a grid cell twice that wide holds few, and
 /// all that are near a point lie in the cells of its corners `x - t`, `x` and `x + t`: eight at most, but for rounding.
-fn within(positions: &[DVec3], tolerance: f64) -> Vec<u32> {
+fn within(positions: &[DVec3], tolerance: f64, control: &mut Control<'_>) -> Result<Vec<u32>, Cancelled> {
     let cell = |x: f64| {
         let cell = (x / tolerance * 0.5).floor();
         // So far out that the tolerance is less than a bit of the coordinate: equal coordinates only.
@@ -128,6 +138,7 @@ fn within(positions: &[DVec3], tolerance: f64) -> Vec<u32> {
             merged.push(NONE);
             continue;
         }
+        tick(control, i, positions.len())?;
         let p = p + DVec3::ZERO;
         let [xs, ys, zs] = p.to_array().map(along);
         let mut kept = NONE;
@@ -151,7 +162,7 @@ fn within(positions: &[DVec3], tolerance: f64) -> Vec<u32> {
         }
         merged.push(kept);
     }
-    merged
+    Ok(merged)
 }
 
 #[cfg(test)]
@@ -195,12 +206,12 @@ mod tests {
     proptest! {
         #[test]
         fn welding_within_a_tolerance_equals_the_quadratic_loop(points in lattice(), t in prop_oneof![Just(0.1), Just(0.05), 1e-3f64..0.7, Just(1e-300), Just(20.0)]) {
-            prop_assert_eq!(weld(&points, Some(t)).unwrap(), naive(&points, t));
+            prop_assert_eq!(weld(&points, Some(t), &mut Control::none()).unwrap(), naive(&points, t));
         }
 
         #[test]
         fn exact_welding_equals_the_quadratic_loop(points in lattice()) {
-            prop_assert_eq!(exact(&points).unwrap(), naive(&points, 0.0));
+            prop_assert_eq!(exact(&points, &mut Control::none()).unwrap().unwrap(), naive(&points, 0.0));
             prop_assert_eq!(exact_by_sorting(&points), naive(&points, 0.0));
         }
     }
@@ -208,14 +219,17 @@ mod tests {
     #[test]
     fn a_tolerance_that_is_negative_or_not_a_number_is_refused() {
         for t in [-1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(weld(&[DVec3::ZERO], Some(t)), Err(CleanError::BadTolerance(_))));
+            assert!(matches!(
+                weld(&[DVec3::ZERO], Some(t), &mut Control::none()),
+                Err(CleanError::BadTolerance(_))
+            ));
         }
     }
 
     #[test]
     fn a_chain_of_near_points_is_not_pulled_together() {
         let chain: Vec<DVec3> = (0..5).map(|i| DVec3::X * f64::from(i) * 0.75).collect();
-        assert_eq!(weld(&chain, Some(1.0)).unwrap(), [0, 0, 2, 2, 4]);
+        assert_eq!(weld(&chain, Some(1.0), &mut Control::none()).unwrap(), [0, 0, 2, 2, 4]);
     }
 
     #[test]

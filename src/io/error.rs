@@ -38,6 +38,9 @@ pub enum NoteKind {
     /// A face has fewer than three corners; kept.
     #[error("faces of fewer than three corners, kept")]
     ShortFace,
+    /// Some vertices have colours and some have none; those are white.
+    #[error("vertices without a colour beside some that have one, white")]
+    MissingColor,
     /// A texture or normal index names nothing; that corner has no value.
     #[error("texture or normal indices that name nothing, left out")]
     AttributeOutOfRange,

@@ -18,6 +18,8 @@ use super::error::ReadError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
+    /// The most bytes that [`read_file`](super::read_file) takes from a file.
+    pub bytes: u64,
     /// The most vertices.
     pub vertices: u64,
     /// The most faces.
@@ -27,14 +29,18 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// What a mesh can number: 2^31 - 2 of each.
+    /// What a mesh can number, 2^31 - 2 of each; and files of 8 GiB.
     fn default() -> Self {
         let most = crate::soup::MAX_ELEMENTS as u64;
-        Self { vertices: most, faces: most, corners: most }
+        Self { bytes: 8 << 30, vertices: most, faces: most, corners: most }
     }
 }
 
 impl Limits {
+    pub(super) fn check_bytes(&self, wanted: u64) -> Result<(), ReadError> {
+        check("bytes", wanted, self.bytes)
+    }
+
     pub(super) fn check_vertices(&self, wanted: u64) -> Result<(), ReadError> {
         check("vertices", wanted, self.vertices)
     }

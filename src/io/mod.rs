@@ -20,7 +20,8 @@ pub use ply::{read_ply, write_ply, write_ply_ascii, write_ply_big_endian};
 pub use stl::{read_stl, write_stl, write_stl_ascii};
 
 use crate::PolygonSoup;
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// What a file held.
@@ -126,7 +127,13 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, Rea
 /// ```
 pub fn read_file(path: impl AsRef<Path>, limits: &Limits) -> Result<Loaded, ReadError> {
     let path = path.as_ref();
-    let bytes = std::fs::read(path)?;
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    limits.check_bytes(length)?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    // A pipe or a device has no length, and may have no end.
+    file.take(limits.bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    limits.check_bytes(bytes.len() as u64)?;
     let format =
         Format::from_path(path).or_else(|| Format::detect(&bytes)).ok_or(ReadError::UnknownFormat)?;
     read(&bytes, format, limits)

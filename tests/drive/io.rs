@@ -6,7 +6,7 @@ use meshwright::PolygonSoup;
 use meshwright::io::{self, Encoding, Format, Limits, Lost};
 
 /// Small enough that a fuzzer finds whatever breaks them.
-const LIMITS: Limits = Limits { vertices: 4096, faces: 4096, corners: 16384 };
+const LIMITS: Limits = Limits { bytes: 1 << 20, vertices: 4096, faces: 4096, corners: 16384 };
 
 pub(crate) fn obj(bytes: &[u8]) {
     drive(bytes, Format::Obj);

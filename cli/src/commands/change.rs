@@ -21,6 +21,7 @@ fn import_change_write(
     args: &Convert,
     change: impl FnOnce(&mut Mesh),
 ) -> Result<Answer, Failure> {
+    args.output.format()?;
     let (mut mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
     session.timed(Phase::Run, || change(&mut mesh));
     let soup = mesh.to_indexed().into();
@@ -28,13 +29,14 @@ fn import_change_write(
     let json = json!({
         "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "lost": lost, "import": import,
     });
-    let destination = args.output.output.path.display();
+    let destination = args.output.output.display();
     let text =
         format!("wrote {destination}: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
     Ok(Answer { json: fields(json), text, is_no: false })
 }
 
 pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failure> {
+    args.output.format()?;
     let (loaded, outcome) = import::indexed(session, &args.file, args.weld.weld)?;
     let faces = &outcome.maps.faces;
     let unified = session.timed(Phase::Run, || unify_winding(&outcome.value.topology()));
@@ -55,6 +57,6 @@ pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failu
     json.insert("flipped".to_owned(), json!(flipped));
     json.insert("lost".to_owned(), json!(lost));
     json.insert("import".to_owned(), import::import_json(&loaded, &outcome.report));
-    let text = format!("wrote {}: {} faces flipped\n", args.output.output.path.display(), flipped.len());
+    let text = format!("wrote {}: {} faces flipped\n", args.output.output.display(), flipped.len());
     Ok(Answer { json, text, is_no: false })
 }

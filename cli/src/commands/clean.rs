@@ -9,6 +9,7 @@ use meshwright::{Control, PolygonSoup};
 use serde_json::json;
 
 pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failure> {
+    args.output.format()?;
     let loaded = import::load(session, &args.file)?;
     let Profile::Preserve = args.profile;
     let before = session.timed(Phase::Run, || cleanup::inspect(&loaded.soup, args.weld))?;
@@ -52,7 +53,7 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     }
     text.push_str(&format!(
         "wrote {}\nbefore: {}\nafter:  {}\n",
-        args.output.output.path.display(),
+        args.output.output.display(),
         summary(&before),
         summary(&after)
     ));

@@ -173,8 +173,9 @@ impl<'a> Filter<'a> {
             return Err(error);
         }
         let Seen { vertices, faces, odd, mut colors, normals, uvs, mut groups, mut notes, .. } = self.seen;
-        if !colors.is_empty() {
+        if !colors.is_empty() && colors.len() < vertices {
             colors.resize(vertices, [1.0; 4]);
+            notes.add(NoteKind::MissingColor, Place::Line(1));
         }
         if let Some(last) = groups.last_mut() {
             last.faces.end = faces;
@@ -283,6 +284,9 @@ impl<'a> Filter<'a> {
             let mut color = [1.0; 4];
             for (c, word) in color.iter_mut().zip(&rest) {
                 *c = number(word).unwrap_or(1.0) as f32;
+            }
+            if self.seen.colors.len() < self.seen.vertices {
+                self.seen.notes.add(NoteKind::MissingColor, Place::Line(line));
             }
             self.seen.colors.resize(self.seen.vertices, [1.0; 4]);
             self.seen.colors.push(color);

@@ -1,9 +1,9 @@
 //! Reading PLY.
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
-use super::super::text::{Lines, number_at, words};
+use super::super::text::{Lines, number_at, shown, words};
 use super::super::{Limits, Loaded};
-use super::header::{self, Element, Encoding, Header};
+use super::header::{self, Element, Encoding, Header, Scalar};
 use crate::{CornerData, PolygonSoup};
 use glam::DVec3;
 
@@ -263,23 +263,28 @@ impl Reader {
                 }
                 let (line, content) = next_line(&mut self.notes)?;
                 let mut words = words(content);
-                let mut value = || match words.next() {
-                    Some(word) => number_at(line, word),
-                    None => Err(ReadError::line(line, Malformed::Truncated("an element"))),
+                let mut value = |whole: bool| {
+                    let Some(word) = words.next() else {
+                        return Err(ReadError::line(line, Malformed::Truncated("an element")));
+                    };
+                    let value = number_at(line, word)?;
+                    let fits = !whole || value.fract() == 0.0;
+                    if fits { Ok(value) } else { Err(ReadError::line(line, Malformed::Number(shown(word)))) }
                 };
+                let whole = |scalar: Scalar| scalar.is_integer();
                 values.clear();
                 for (i, property) in element.properties.iter().enumerate() {
                     if property.list.is_none() {
-                        values.push(value()?);
+                        values.push(value(whole(property.scalar))?);
                         continue;
                     }
-                    let length = value()?;
+                    let length = value(true)?;
                     if !(0.0..=content.len() as f64).contains(&length) {
                         return Err(ReadError::line(line, Malformed::Truncated("a list")));
                     }
                     let mut items = Vec::new();
                     for _ in 0..length as usize {
-                        items.push(value()?);
+                        items.push(value(whole(property.scalar))?);
                     }
                     if matches!(role, Role::Face(l) if l == i) {
                         list = items;
