@@ -402,6 +402,19 @@ fn the_fuzz_corpus_passes() {
 }
 
 #[test]
+fn one_face_that_becomes_thousands_takes_no_quadratic_time_and_is_recorded_once_a_step() {
+    // A long walk over a hundred vertices; the place of each record once cost the whole walk.
+    let mut noise = shapes::Noise(6);
+    let points = (0..100).map(|_| dvec3(noise.unit(), noise.unit(), 0.0)).collect();
+    let walk: Vec<u32> = (0..300_000).map(|_| noise.below(100)).collect();
+    let outcome = cleaned(&PolygonSoup::new(points, vec![walk].into()));
+    assert!(outcome.value.face_count() > 1000);
+    for kind in [Kind::PinchedFace, Kind::DuplicateFace, Kind::FlippedFace] {
+        assert_eq!(outcome.report.count(kind), 1, "{kind}");
+    }
+}
+
+#[test]
 fn many_faces_on_one_edge_take_no_quadratic_time() {
     let n = 60_000u32;
     let mut points = vec![DVec3::ZERO, DVec3::Z];

@@ -1,4 +1,4 @@
-// What both peers share: the input, the clock, and how results are printed.
+// What both peers share: the input, the clock, the memory, and how results are printed.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <malloc.h>
 #include <string>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 #include <vector>
 
 struct Shape {
@@ -18,19 +19,28 @@ struct Shape {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+[[noreturn]] inline void fail(const std::string& why) {
+  std::fprintf(stderr, "%s\n", why.c_str());
+  std::exit(3);
+}
+
 // Little-endian: u64 vertices, u64 triangles, three f64 a vertex, three u32 a triangle.
 inline Shape read_shape(const char* path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::uint64_t size = file ? static_cast<std::uint64_t>(file.tellg()) : 0;
   std::uint64_t counts[2] = {0, 0};
+  file.seekg(0);
   file.read(reinterpret_cast<char*>(counts), sizeof counts);
+  if (!file || counts[0] > size || counts[1] > size || size != 16 + 24 * counts[0] + 12 * counts[1]) {
+    fail(std::string("no shape in ") + path);
+  }
   Shape shape;
   shape.points.resize(counts[0]);
   shape.triangles.resize(counts[1]);
   file.read(reinterpret_cast<char*>(shape.points.data()), counts[0] * sizeof shape.points[0]);
   file.read(reinterpret_cast<char*>(shape.triangles.data()), counts[1] * sizeof shape.triangles[0]);
   if (!file) {
-    std::fprintf(stderr, "cannot read %s\n", path);
-    std::exit(3);
+    fail(std::string("cannot read ") + path);
   }
   return shape;
 }
@@ -42,24 +52,71 @@ inline double now() {
   return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
-// The least time of several runs.
+struct Times {
+  double least, median;
+};
+
+// The least and the median time of several runs. What a run returns is dropped after the clock has stopped.
 template <class Run>
-double best(int repeats, Run run) {
-  double least = std::numeric_limits<double>::max();
-  for (int i = 0; i < repeats; ++i) {
+Times best(int repeats, Run run) {
+  std::vector<double> times;
+  for (int i = 0; i < std::max(repeats, 1); ++i) {
     const double start = now();
-    run();
-    least = std::min(least, now() - start);
+    const auto result = run();
+    times.push_back(now() - start);
+    asm volatile("" : : "r"(&result) : "memory");
   }
-  return least;
+  std::sort(times.begin(), times.end());
+  return {times.front(), (times[(times.size() - 1) / 2] + times[times.size() / 2]) / 2};
 }
 
-// Bytes taken from the heap and not given back.
+inline void print(const char* name, const std::string& operation, double value, const char* unit) {
+  std::printf("%s\t%s\t%.3f\t%s\n", name, operation.c_str(), value, unit);
+}
+
+inline void print(const char* name, const std::string& operation, Times times, double count, const char* unit) {
+  print(name, operation, times.least / count, unit);
+  print(name, operation + "_median", times.median / count, unit);
+}
+
+// Bytes taken from the heap and not given back, mapped blocks included.
 inline double heap() {
   const auto info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-inline void print(const char* name, const char* operation, double value, const char* unit) {
-  std::printf("%s\t%s\t%.3f\t%s\n", name, operation, value, unit);
+// Memory of this process in bytes, by the name /proc/self/status gives it: VmRSS now, VmHWM at most.
+inline double status(const std::string& name) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind(name, 0) == 0) {
+      return 1024 * std::atof(line.c_str() + name.size());
+    }
+  }
+  fail("no " + name + " in /proc/self/status");
+}
+
+// Prints what a mesh takes a face: `memory` is what malloc has handed out for it (mallinfo2), `resident` the pages
+// touched for it, `peak` those of the build at its highest. The build runs in a child process, so that no
+// memory freed before it is taken again unseen.
+template <class Build>
+void print_memory(const char* name, const std::string& suffix, double faces, Build build) {
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child < 0) {
+    fail("cannot fork");
+  }
+  if (child == 0) {
+    const double taken = heap(), resident = status("VmRSS:"), peak = status("VmHWM:");
+    const auto mesh = build();
+    print(name, "memory" + suffix, (heap() - taken) / faces, "bytes/face");
+    print(name, "resident" + suffix, (status("VmRSS:") - resident) / faces, "bytes/face");
+    print(name, "peak" + suffix, (status("VmHWM:") - peak) / faces, "bytes/face");
+    std::fflush(stdout);
+    _exit(0);
+  }
+  int verdict = 0;
+  if (waitpid(child, &verdict, 0) != child || verdict != 0) {
+    fail("the build failed in the child process");
+  }
 }

@@ -16,7 +16,7 @@ pub use weld::propose_tolerance;
 
 use crate::build::assemble;
 use crate::matching::{Matching, NONE};
-use crate::report::{Element, Kind, Maps, Outcome, Step, StepSummary};
+use crate::report::{Element, Kind, Maps, Outcome, Record, Step, StepSummary};
 use crate::topology::{FaceOf, duplicate_faces, flip_faces, next_corner, orient};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
 use glam::DVec3;
@@ -178,11 +178,14 @@ fn drop_duplicates(pool: &mut Pool<'_>, matching: &Matching) -> bool {
     !duplicates.is_empty()
 }
 
-/// Records a change to a face, by the face of the soup it comes from.
+/// Records a change to a face, by the face of the soup it comes from; once, if that became several.
 fn record_face(pool: &mut Pool<'_>, face: u32, step: Step, kind: Kind) {
-    let source = pool.face_source[face as usize];
-    let place = pool.middle(&pool.soup.polygons[source as usize]);
-    pool.record(step, kind, Element::Face(source), place);
+    let element = Element::Face(pool.face_source[face as usize]);
+    let is_same = |r: &Record| (r.step, r.kind, r.element) == (step, kind, element);
+    if !pool.report.records.last().is_some_and(is_same) {
+        let place = pool.middle(&pool.soup.polygons[pool.face_source[face as usize] as usize]);
+        pool.record(step, kind, element, place);
+    }
 }
 
 /// Unifies windings, pairs the faces at edges with three or more, unifies again and cuts what cannot be oriented:

@@ -71,13 +71,14 @@ impl Triangulator {
         self.prev = [n as u32 - 1].into_iter().chain(0..n as u32 - 1).collect();
         let mut reflex: Vec<bool> = (0..n).map(|i| self.turn(i) <= 0.0).collect();
         let grid = Grid::new(&self.plane, &reflex);
-        // Enough for thousands of reflex corners; without a bound one file could take minutes.
-        let mut budget = 1024 * n + 4096;
+        // Some tens of times what polygons from life take; without a bound one file could take minutes.
+        let mut budget = 128 * n + 4096;
         let (mut left, mut at, mut since_ear) = (n, 0u32, 0);
         while left > 3 {
+            budget = budget.saturating_sub(1);
             let i = at as usize;
             let (p, q) = (self.prev[i], self.next[i]);
-            let ear = !reflex[i] && self.is_ear(i, &reflex, &grid, &mut budget);
+            let ear = budget > 0 && !reflex[i] && self.is_ear(i, &reflex, &grid, &mut budget);
             // Round once without an ear: the polygon crosses itself or lies on a line. Cut anyway.
             if !ear && since_ear < left && budget > 0 {
                 since_ear += 1;
