@@ -18,14 +18,15 @@ pub(crate) struct Arena<K: Key> {
 impl<K: Key> Arena<K> {
     /// An arena of `count` elements in slots `1..=count`.
     pub(crate) fn filled(count: usize) -> Self {
-        let mut slots = SlotMap::<K, ()>::with_capacity_and_key(count);
-        let mut versions = Vec::with_capacity(count + 1);
-        versions.push(0);
+        let mut slots = SlotMap::with_capacity_and_key(count);
+        let mut last = K::null();
         for _ in 0..count {
-            let ffi = slots.insert(()).data().as_ffi();
-            debug_assert_eq!(ffi as u32 as usize, versions.len(), "slotmap fills fresh slots in order");
-            versions.push((ffi >> 32) as u32);
+            last = slots.insert(());
         }
+        // slotmap fills fresh slots in order, and gives each the version 1.
+        debug_assert!(count == 0 || last.data().as_ffi() == 1 << 32 | count as u64);
+        let mut versions = vec![1; count + 1];
+        versions[0] = 0;
         Self { slots, versions, ranks: Vec::new() }
     }
 

@@ -137,9 +137,10 @@ pub(crate) fn assemble(pool: &IndexedMesh, matching: &Matching) -> Option<Mesh> 
         vertices: Arena::filled(pool.vertex_count()),
         edges: Arena::filled(matching.edges.len()),
         faces: Arena::filled(pool.face_count()),
-        next: vec![NONE; halfedges],
-        prev: vec![NONE; halfedges],
-        origin: vec![NONE; halfedges],
+        // Every entry that means anything is written below.
+        next: vec![0; halfedges],
+        prev: vec![0; halfedges],
+        origin: vec![0; halfedges],
         face: vec![NONE; halfedges],
         vertex_halfedge: vec![NONE; pool.vertex_count() + 1],
         face_halfedge: Vec::with_capacity(pool.face_count() + 1),

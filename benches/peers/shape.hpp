@@ -97,8 +97,8 @@ inline double status(const std::string& name) {
 }
 
 // Prints what a mesh takes a face: `memory` is what malloc has handed out for it (mallinfo2), `resident` the pages
-// touched for it, `peak` those of the build at its highest. The build runs in a child process, so that no
-// memory freed before it is taken again unseen.
+// touched for it, `peak` those of the build at its highest. The build runs in a child process, after memory that was
+// freed earlier has gone back to the system: none of it is taken again unseen.
 template <class Build>
 void print_memory(const char* name, const std::string& suffix, double faces, Build build) {
   std::fflush(stdout);
@@ -107,11 +107,12 @@ void print_memory(const char* name, const std::string& suffix, double faces, Bui
     fail("cannot fork");
   }
   if (child == 0) {
-    const double taken = heap(), resident = status("VmRSS:"), peak = status("VmHWM:");
+    malloc_trim(0);
+    const double taken = heap(), resident = status("VmRSS:");
     const auto mesh = build();
     print(name, "memory" + suffix, (heap() - taken) / faces, "bytes/face");
     print(name, "resident" + suffix, (status("VmRSS:") - resident) / faces, "bytes/face");
-    print(name, "peak" + suffix, (status("VmHWM:") - peak) / faces, "bytes/face");
+    print(name, "peak" + suffix, (status("VmHWM:") - resident) / faces, "bytes/face");
     std::fflush(stdout);
     _exit(0);
   }

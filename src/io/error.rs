@@ -158,6 +158,14 @@ pub enum ReadError {
         /// Why.
         reason: Malformed,
     },
+    /// The file is of a kind that this crate does not read.
+    #[error("{place}: {what} is not supported")]
+    Unsupported {
+        /// Where that is said.
+        place: Place,
+        /// What it is.
+        what: &'static str,
+    },
     /// Neither name nor content tell a format this crate reads.
     #[error("not a format that can be read here")]
     UnknownFormat,
@@ -185,7 +193,7 @@ impl ReadError {
     /// Where in the file, if the file is to blame.
     pub fn place(&self) -> Option<Place> {
         match self {
-            Self::Malformed { place, .. } => Some(*place),
+            Self::Malformed { place, .. } | Self::Unsupported { place, .. } => Some(*place),
             _ => None,
         }
     }
@@ -199,10 +207,12 @@ pub enum WriteError {
     #[error("cannot write: {0}")]
     Io(#[from] std::io::Error),
     /// A corner names no vertex; a file with it could not be read back.
-    #[error("a corner of face {face} names no vertex")]
+    #[error("corner {corner} of face {face} names no vertex")]
     IndexOutOfRange {
         /// The face.
         face: usize,
+        /// Which of its corners, counted from 0.
+        corner: usize,
     },
     /// A face has fewer than three corners.
     #[error("face {face} has fewer than three corners")]

@@ -5,8 +5,9 @@ use super::error::ReadError;
 /// The most that a reader accepts; checked before memory is taken.
 ///
 /// Readers hold the file's bytes (given by the caller) and what they return, and reserve nothing on the word of a
-/// header that the rest of the file cannot make good. Memory beyond the input stays below a small multiple of it: up to
-/// 24 bytes for a vertex, 4 for a corner and 8 for a face, and twice that while a text file is read.
+/// header that the rest of the file cannot make good. Beside the file's bytes a mesh takes up to 2.5 times their number
+/// while it is read, and 6 times from OBJ; at the very worst, from files made for the purpose, that is 12 times, and 40
+/// times from OBJ (tobj's share). Measured on meshes of a million triangles and on the shortest statements there are.
 ///
 /// # Examples
 /// ```

@@ -19,7 +19,7 @@ pub use off::{read_off, write_off};
 pub use ply::{read_ply, write_ply, write_ply_ascii, write_ply_big_endian};
 pub use stl::{read_stl, write_stl, write_stl_ascii};
 
-use crate::PolygonSoup;
+use crate::{CornerData, PolygonSoup, Polygons};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -65,8 +65,12 @@ pub enum Encoding {
 impl Format {
     /// By the name's extension, in any case.
     pub fn from_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        Some(match extension.as_str() {
+        Self::from_extension(path.extension()?.to_str()?)
+    }
+
+    /// By an extension without its dot, in any case.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Some(match extension.to_ascii_lowercase().as_str() {
             "obj" => Self::Obj,
             "stl" => Self::Stl,
             "ply" => Self::Ply,
@@ -102,6 +106,15 @@ impl Format {
 ///
 /// # Errors
 /// [`ReadError`].
+///
+/// # Examples
+/// ```
+/// use meshwright::io::{Format, Limits, read};
+/// let bytes = b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+/// let format = Format::detect(bytes).expect("OFF says what it is");
+/// assert_eq!(read(bytes, format, &Limits::default())?.soup.polygons.len(), 1);
+/// # Ok::<(), meshwright::io::ReadError>(())
+/// ```
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, ReadError> {
     match format {
         Format::Obj => read_obj(bytes, limits),
@@ -130,7 +143,8 @@ pub fn read_file(path: impl AsRef<Path>, limits: &Limits) -> Result<Loaded, Read
     let file = File::open(path)?;
     let length = file.metadata()?.len();
     limits.check_bytes(length)?;
-    let mut bytes = Vec::with_capacity(length as usize);
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX)).map_err(std::io::Error::from)?;
     // A pipe or a device has no length, and may have no end.
     file.take(limits.bytes.saturating_add(1)).read_to_end(&mut bytes)?;
     limits.check_bytes(bytes.len() as u64)?;
@@ -181,8 +195,8 @@ fn check_writable(soup: &PolygonSoup) -> Result<(), WriteError> {
         if corners.len() < 3 {
             return Err(WriteError::ShortFace { face });
         }
-        if corners.iter().any(|&v| v as usize >= count) {
-            return Err(WriteError::IndexOutOfRange { face });
+        if let Some(corner) = corners.iter().position(|&v| v as usize >= count) {
+            return Err(WriteError::IndexOutOfRange { face, corner });
         }
     }
     Ok(())
@@ -211,4 +225,10 @@ fn lost(soup: &PolygonSoup, carried: &[Lost]) -> Vec<Lost> {
         (Lost::Groups, !soup.groups.is_empty()),
     ];
     has.into_iter().filter(|(kind, present)| *present && !carried.contains(kind)).map(|h| h.0).collect()
+}
+
+/// Texture coordinates that stand one for each vertex, as those of corners.
+fn uvs_of_vertices(polygons: &Polygons, uvs: Vec<[f64; 2]>) -> CornerData<[f64; 2]> {
+    let index = |v: &u32| if (*v as usize) < uvs.len() { *v } else { CornerData::<[f64; 2]>::NONE };
+    CornerData { indices: polygons.corners().iter().map(index).collect(), values: uvs }
 }

@@ -11,6 +11,8 @@ use std::io::Write;
 
 const HEADER: usize = 84;
 const FACET: usize = 50;
+/// Within so many bytes an ASCII file has said what it is.
+const BEGINNING: usize = 4096;
 
 /// Reads an STL file: three vertices of its own for every facet. Facets of an ASCII file may have more corners. Several
 /// solids are read as one. Facet normals are left out, as the faces imply them. O(bytes).
@@ -34,7 +36,10 @@ pub fn read_stl(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
         return read_binary(bytes, limits);
     }
     let text = without_mark(bytes)?;
-    if words(text).take(64).any(|w| w.eq_ignore_ascii_case(b"solid") || w.eq_ignore_ascii_case(b"facet")) {
+    let beginning = &text[..text.len().min(BEGINNING)];
+    let has = |keyword: &[u8]| words(beginning).any(|w| w.eq_ignore_ascii_case(keyword));
+    // A binary file that was cut short may begin with "solid", too.
+    if has(b"facet") || has(b"endsolid") || (has(b"solid") && !beginning.contains(&0)) {
         return read_ascii(text, limits);
     }
     // Not text: say what a binary file would be missing.
@@ -80,11 +85,11 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     if data.len() > FACET * count {
         notes.add(NoteKind::TrailingData, Place::Byte((HEADER + FACET * count) as u64));
     }
-    let triangles: Vec<[u32; 3]> = (0..wanted as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Ok(Loaded {
-        soup: PolygonSoup::new(positions, Polygons::from_triangles(&triangles)),
-        notes: notes.finish(),
-    })
+    let mut polygons = Polygons::with_capacity(count, 3 * count);
+    for first in (0..3 * wanted as u32).step_by(3) {
+        polygons.push([first, first + 1, first + 2]);
+    }
+    Ok(Loaded { soup: PolygonSoup::new(positions, polygons), notes: notes.finish() })
 }
 
 fn read_ascii(text: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
@@ -199,6 +204,16 @@ pub fn write_stl(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, glam::DVec3, io::write_stl_ascii};
+/// let soup = PolygonSoup::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], Polygons::from_triangles(&[[0, 1, 2]]));
+/// let mut file = Vec::new();
+/// write_stl_ascii(&soup, &mut file)?;
+/// assert!(file.starts_with(b"solid meshwright\nfacet normal 0 0 1\n"));
+/// # Ok::<(), meshwright::io::WriteError>(())
+/// ```
 pub fn write_stl_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
     check_writable(soup)?;
     writeln!(sink, "solid meshwright")?;

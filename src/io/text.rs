@@ -15,6 +15,32 @@ impl<'a> Lines<'a> {
     }
 }
 
+/// Bytes that end a line, begin a comment or continue a line.
+const SPECIAL: [bool; 256] = {
+    let mut special = [false; 256];
+    special[b'\n' as usize] = true;
+    special[b'\r' as usize] = true;
+    special[b'#' as usize] = true;
+    special[b'\\' as usize] = true;
+    special
+};
+
+impl<'a> Lines<'a> {
+    /// The next line, if it ends in `\n` or `\r\n` and has neither `#` nor backslash: one look at each byte for nearly all lines.
+    pub(super) fn next_plain(&mut self) -> Option<(u64, &'a [u8])> {
+        let rest = self.rest?;
+        let end = rest.iter().position(|&b| SPECIAL[b as usize])?;
+        let after = match rest.get(end..end + 2) {
+            Some(b"\r\n") => end + 2,
+            _ if rest[end] == b'\n' => end + 1,
+            _ => return None,
+        };
+        self.number += 1;
+        self.rest = Some(&rest[after..]);
+        Some((self.number, &rest[..end]))
+    }
+}
+
 impl<'a> Iterator for Lines<'a> {
     type Item = (u64, &'a [u8]);
 
@@ -31,9 +57,14 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
+/// Whether a byte stands between words; files from life have zeros there, too.
+pub(super) fn is_blank(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0
+}
+
 /// The words of a line.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
-    line.split(|b| b.is_ascii_whitespace() || *b == 0).filter(|w| !w.is_empty())
+    line.split(|b| is_blank(*b)).filter(|w| !w.is_empty())
 }
 
 /// The line up to a `#`, unless that stands in a number such as `1.#IND`.

@@ -2,88 +2,48 @@
 
 use super::super::Limits;
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
-use super::super::text::{Lines, before_comment, integer, is_integer, number, number_at, shown, words};
-use crate::{CornerData, Group, PolygonSoup};
+use super::super::text::{is_blank, number, number_at, words};
+use super::corner::{self, Attribute, Index};
+use super::statement::Statements;
+use crate::{CornerData, Group, PolygonSoup, Polygons};
 use glam::DVec3;
-use std::borrow::Cow;
 use std::io::{BufRead, Read, Write};
 
 /// tobj takes a polygon of fewer corners for a point or a line; so there are at least so many vertices in its text.
 pub(super) const FEWEST: usize = 3;
 
-/// Statements with the number of their first line: comments taken out, lines joined that end in a backslash.
-pub(super) fn statements(text: &[u8]) -> impl Iterator<Item = (u64, Cow<'_, [u8]>)> {
-    let mut lines = Lines::new(text);
-    std::iter::from_fn(move || {
-        let (number, line) = lines.next()?;
-        let first = before_comment(line);
-        if !first.ends_with(b"\\") {
-            return Some((number, Cow::Borrowed(first)));
-        }
-        let mut joined = first[..first.len() - 1].to_vec();
-        for (_, line) in lines.by_ref() {
-            let line = before_comment(line);
-            let (part, more) = line.strip_suffix(b"\\").map_or((line, false), |l| (l, true));
-            joined.push(b' ');
-            joined.extend_from_slice(part);
-            if !more {
-                break;
-            }
-        }
-        Some((number, Cow::Owned(joined)))
-    })
-}
-
-/// What a first look counts.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Counts {
-    pub(super) vertices: u64,
-    pub(super) faces: u64,
-    /// Statements of a kind that occurs in OBJ files.
-    pub(super) statements: u64,
-}
-
-impl Counts {
-    pub(super) fn of(text: &[u8]) -> Self {
-        let mut counts = Self::default();
-        for (_, statement) in statements(text) {
-            match words(&statement).next() {
-                Some(b"v") => counts.vertices += 1,
-                Some(b"f" | b"fo") => counts.faces += 1,
-                Some(b"vt" | b"vn" | b"vp" | b"o" | b"g" | b"s" | b"usemtl" | b"mtllib" | b"l" | b"p") => {}
-                _ => continue,
-            }
-            counts.statements += 1;
-        }
-        counts
-    }
-}
-
 /// What the filter kept.
 pub(super) struct Kept {
     pub(super) vertices: usize,
     pub(super) faces: usize,
-    /// Faces that were not passed on, by their number.
-    pub(super) odd: Vec<(usize, Vec<u32>)>,
+    pub(super) held: Held,
     pub(super) colors: Vec<[f32; 4]>,
     pub(super) corner_normals: Option<CornerData<DVec3>>,
     pub(super) corner_uvs: Option<CornerData<[f64; 2]>>,
     pub(super) groups: Vec<Group>,
     pub(super) notes: Notes,
+    /// Statements of a kind that occurs in OBJ files.
+    pub(super) statements: u64,
+}
+
+/// Faces that were not passed on: short ones, and those that name vertices which were not there yet.
+#[derive(Default)]
+pub(super) struct Held {
+    /// Their numbers and lines.
+    pub(super) faces: Vec<(usize, u64)>,
+    pub(super) polygons: Polygons,
 }
 
 /// A reader of plain OBJ text over the file's text.
 pub(super) struct Filter<'a> {
-    statements: Box<dyn Iterator<Item = (u64, Cow<'a, [u8]>)> + 'a>,
-    counts: Counts,
+    text: &'a [u8],
+    statements: Statements<'a>,
     limits: Limits,
     /// Plain text not yet read.
     plain: Vec<u8>,
     at: usize,
-    /// Faces are passed on after all vertices and the polygon through them, so they wait here.
-    faces: Vec<u8>,
     is_ended: bool,
-    error: Option<ReadError>,
+    error: Option<(u64, ReadError)>,
     seen: Seen,
 }
 
@@ -92,72 +52,31 @@ pub(super) struct Filter<'a> {
 struct Seen {
     vertices: usize,
     faces: usize,
-    corners: u64,
-    odd: Vec<(usize, Vec<u32>)>,
+    corners: usize,
+    statements: u64,
+    held: Held,
     colors: Vec<[f32; 4]>,
+    /// Vertices without a colour, and the line of the first.
+    uncolored: usize,
+    first_uncolored: u64,
     normals: Attribute<DVec3>,
     uvs: Attribute<[f64; 2]>,
     groups: Vec<Group>,
+    /// Bytes of names that were copied from one group to the next.
+    inherited: usize,
     notes: Notes,
     /// Scratch for one face.
-    corner: Vec<u32>,
-}
-
-/// Values that corners refer to.
-#[derive(Default)]
-struct Attribute<T> {
-    values: Vec<T>,
-    /// One per corner from the first corner that has a value; shorter until then.
-    indices: Vec<u32>,
-    is_used: bool,
-}
-
-impl<T> Attribute<T> {
-    /// Notes the value of the next corner, and answers whether there is one if there should be.
-    fn refer(&mut self, word: Option<&[u8]>, corners_before: u64) -> bool {
-        let Some(word) = word.filter(|w| !w.is_empty()) else {
-            if self.is_used {
-                self.indices.push(CornerData::<T>::NONE);
-            }
-            return true;
-        };
-        if !self.is_used {
-            self.is_used = true;
-            self.indices.resize(corners_before as usize, CornerData::<T>::NONE);
-        }
-        // Values may come after the faces that use them; whether they do is seen at the end.
-        let index = resolve(word, self.values.len()).unwrap_or(CornerData::<T>::NONE);
-        self.indices.push(index);
-        index != CornerData::<T>::NONE
-    }
-
-    fn finish(mut self, notes: &mut Notes) -> Option<CornerData<T>> {
-        let count = self.values.len() as u32;
-        for i in self.indices.iter_mut().filter(|i| **i != CornerData::<T>::NONE && **i >= count) {
-            *i = CornerData::<T>::NONE;
-            notes.add(NoteKind::AttributeOutOfRange, Place::Line(1));
-        }
-        let any = self.indices.iter().any(|&i| i != CornerData::<T>::NONE);
-        any.then_some(CornerData { values: self.values, indices: self.indices })
-    }
-}
-
-/// An index from 1, or from the end of what was read so far if negative, as an index from 0.
-fn resolve(word: &[u8], so_far: usize) -> Option<u32> {
-    let i = integer(word)?;
-    let from_zero = if i < 0 { i.checked_add(so_far as i64)? } else { i - 1 };
-    u32::try_from(from_zero).ok()
+    face: Vec<u32>,
 }
 
 impl<'a> Filter<'a> {
-    pub(super) fn new(text: &'a [u8], counts: Counts, limits: Limits) -> Self {
+    pub(super) fn new(text: &'a [u8], limits: Limits) -> Self {
         Self {
-            statements: Box::new(statements(text)),
-            counts,
+            text,
+            statements: Statements::new(text),
             limits,
             plain: Vec::new(),
             at: 0,
-            faces: Vec::new(),
             is_ended: false,
             error: None,
             seen: Seen::default(),
@@ -167,23 +86,39 @@ impl<'a> Filter<'a> {
     /// What was kept, once tobj has read to the end.
     ///
     /// # Errors
-    /// What was wrong with the file.
-    pub(super) fn finish(mut self) -> Result<Kept, ReadError> {
-        if let Some(error) = self.error.take() {
+    /// What was wrong with the file, with the line.
+    pub(super) fn finish(self) -> Result<Kept, (u64, ReadError)> {
+        if let Some(error) = self.error {
             return Err(error);
         }
-        let Seen { vertices, faces, odd, mut colors, normals, uvs, mut groups, mut notes, .. } = self.seen;
-        if !colors.is_empty() && colors.len() < vertices {
-            colors.resize(vertices, [1.0; 4]);
-            notes.add(NoteKind::MissingColor, Place::Line(1));
+        let text = self.text;
+        let mut seen = self.seen;
+        if !seen.colors.is_empty() {
+            seen.colors.resize(seen.vertices, [1.0; 4]);
+            for _ in 0..seen.uncolored {
+                seen.notes.add(NoteKind::MissingColor, Place::Line(seen.first_uncolored));
+            }
         }
-        if let Some(last) = groups.last_mut() {
-            last.faces.end = faces;
+        seen.end_group();
+        for (face, (_, line)) in seen.held.polygons.iter().zip(&seen.held.faces) {
+            for _ in face.iter().filter(|&&v| v as usize >= seen.vertices) {
+                seen.notes.add(NoteKind::IndexOutOfRange, Place::Line(*line));
+            }
         }
-        groups.retain(|g| !g.faces.is_empty());
-        let corner_normals = normals.finish(&mut notes);
-        let corner_uvs = uvs.finish(&mut notes);
-        Ok(Kept { vertices, faces, odd, colors, corner_normals, corner_uvs, groups, notes })
+        let line_of = |corner| line_of_corner(text, corner);
+        let corner_normals = seen.normals.finish(&mut seen.notes, line_of);
+        let corner_uvs = seen.uvs.finish(&mut seen.notes, line_of);
+        Ok(Kept {
+            vertices: seen.vertices,
+            faces: seen.faces,
+            held: seen.held,
+            colors: seen.colors,
+            corner_normals,
+            corner_uvs,
+            groups: seen.groups,
+            notes: seen.notes,
+            statements: seen.statements,
+        })
     }
 
     /// Reads statements until there is plain text to pass on.
@@ -198,14 +133,14 @@ impl<'a> Filter<'a> {
                 return;
             };
             if let Err(error) = self.statement(line, &statement) {
-                self.error = Some(error);
+                self.error = Some((line, error));
                 self.is_ended = true;
                 self.plain.clear();
             }
         }
     }
 
-    /// After all vertices: the polygon through them, then the faces.
+    /// At the end: the polygon through all vertices in order, which says what number tobj gave to each.
     fn end(&mut self) {
         let vertices = self.seen.vertices;
         for _ in vertices..FEWEST {
@@ -213,134 +148,170 @@ impl<'a> Filter<'a> {
         }
         self.plain.push(b'f');
         for i in 1..=vertices.max(FEWEST) {
-            // Writing to a vector does not fail.
-            let _ = write!(self.plain, " {i}");
+            push_integer(&mut self.plain, i as u32);
         }
         self.plain.push(b'\n');
-        self.plain.append(&mut self.faces);
     }
 
     fn statement(&mut self, line: u64, statement: &[u8]) -> Result<(), ReadError> {
-        let place = Place::Line(line);
-        let mut words = words(statement);
+        let start = statement.iter().position(|&b| !is_blank(b)).unwrap_or(statement.len());
+        let length = statement[start..].iter().position(|&b| is_blank(b)).unwrap_or(statement.len() - start);
+        let (keyword, rest) = statement[start..].split_at(length);
         let seen = &mut self.seen;
-        match words.next() {
-            Some(b"v") => return self.vertex(line, words),
-            Some(b"f" | b"fo") => return self.face(line, words),
-            Some(b"vt") => {
-                let mut values = words.take(2).map(|w| number_at(line, w));
-                let u = values.next().unwrap_or(Ok(0.0))?;
-                seen.uvs.values.push([u, values.next().unwrap_or(Ok(0.0))?]);
+        seen.statements += 1;
+        match keyword {
+            b"v" => return self.vertex(line, rest),
+            b"f" | b"fo" => return self.face(line, rest),
+            b"vt" => seen.uvs.values.push(numbers(line, rest)?),
+            b"vn" => seen.normals.values.push(DVec3::from(numbers::<3>(line, rest)?)),
+            b"o" | b"g" => {
+                let name = seen.name(line, rest);
+                let material = seen.groups.last().and_then(|g| g.material.clone());
+                seen.inherited += material.as_ref().map_or(0, String::len);
+                seen.start_group(Group { name, material, faces: 0..0 });
+                return self.check_inherited();
             }
-            Some(b"vn") => {
-                let mut normal = DVec3::ZERO;
-                for (i, w) in words.take(3).enumerate() {
-                    normal[i] = number_at(line, w)?;
-                }
-                seen.normals.values.push(normal);
+            b"usemtl" => {
+                let material = Some(seen.name(line, rest)).filter(|m| !m.is_empty());
+                let name = seen.groups.last().map(|g| g.name.clone()).unwrap_or_default();
+                seen.inherited += name.len();
+                seen.start_group(Group { name, material, faces: 0..0 });
+                return self.check_inherited();
             }
-            Some(keyword @ (b"o" | b"g" | b"usemtl")) => {
-                let name = rest_of(statement, keyword);
-                let old = seen.groups.last().cloned().unwrap_or_default();
-                let new = if keyword == b"usemtl" {
-                    Group { material: Some(name), name: old.name, faces: 0..0 }
-                } else {
-                    Group { name, material: old.material, faces: 0..0 }
-                };
-                seen.start_group(new);
-            }
-            Some(b"l" | b"p") => seen.notes.add(NoteKind::PointOrLine, place),
+            b"l" | b"p" => seen.notes.add(NoteKind::PointOrLine, Place::Line(line)),
             // Material files are not opened; smoothing groups say nothing that normals do not.
-            Some(b"mtllib" | b"s") | None => {}
-            Some(_) => seen.notes.add(NoteKind::Ignored, place),
+            b"mtllib" | b"s" | b"vp" => {}
+            b"" => seen.statements -= 1,
+            _ => {
+                seen.statements -= 1;
+                seen.notes.add(NoteKind::Ignored, Place::Line(line));
+            }
         }
         Ok(())
     }
 
-    fn vertex<'w>(
-        &mut self,
-        line: u64,
-        words: impl Iterator<Item = &'w [u8]> + Clone,
-    ) -> Result<(), ReadError> {
-        self.plain.push(b'v');
-        for word in words.clone().take(3) {
-            self.plain.push(b' ');
-            if word.iter().all(|b| matches!(b, b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E')) {
-                // Most likely a number: tobj finds out, and the line is looked for only if it is none.
-                self.plain.extend_from_slice(word);
-                continue;
+    /// Every group holds its name and its material, so a long name could be copied for each of many short statements:
+    /// memory that grows with the square of the file.
+    fn check_inherited(&self) -> Result<(), ReadError> {
+        const ALWAYS: u64 = 1 << 20;
+        let (wanted, allowed) = (self.seen.inherited as u64, ALWAYS + 16 * self.text.len() as u64);
+        let what = "bytes of names that groups take over from the group before";
+        if wanted > allowed { Err(ReadError::Limit { what, wanted, allowed }) } else { Ok(()) }
+    }
+
+    fn vertex(&mut self, line: u64, rest: &[u8]) -> Result<(), ReadError> {
+        self.limits.check_vertices(self.seen.vertices as u64 + 1)?;
+        self.plain.extend_from_slice(b"v");
+        let rest = match plain_coordinates(rest) {
+            // Most likely numbers: tobj finds out, and the line is looked for only if they are none.
+            Some(end) => {
+                self.plain.extend_from_slice(&rest[..end]);
+                &rest[end..]
             }
-            let value = number_at(line, word)?;
-            let _ = write!(self.plain, "{value}");
-        }
+            None => self.odd_coordinates(line, rest)?,
+        };
         self.plain.push(b'\n');
-        let mut rest = words.skip(2);
-        if rest.next().is_none() {
-            return Err(ReadError::line(line, Malformed::Expected("three coordinates")));
+        let seen = &mut self.seen;
+        if rest.iter().any(|&b| !is_blank(b)) {
+            seen.color(line, rest);
         }
-        let rest: Vec<&[u8]> = rest.take(4).collect();
-        // A fourth number alone is a weight, which says nothing about a polygon mesh.
-        if rest.len() >= 3 {
-            let mut color = [1.0; 4];
-            for (c, word) in color.iter_mut().zip(&rest) {
-                *c = number(word).unwrap_or(1.0) as f32;
+        if seen.colors.len() <= seen.vertices {
+            seen.uncolored += 1;
+            if seen.uncolored == 1 {
+                seen.first_uncolored = line;
             }
-            if self.seen.colors.len() < self.seen.vertices {
-                self.seen.notes.add(NoteKind::MissingColor, Place::Line(line));
-            }
-            self.seen.colors.resize(self.seen.vertices, [1.0; 4]);
-            self.seen.colors.push(color);
         }
-        self.seen.vertices += 1;
+        seen.vertices += 1;
         Ok(())
     }
 
-    fn face<'w>(&mut self, line: u64, words: impl Iterator<Item = &'w [u8]>) -> Result<(), ReadError> {
+    /// Passes on three coordinates in a spelling of ours, and returns what follows them.
+    fn odd_coordinates<'s>(&mut self, line: u64, mut rest: &'s [u8]) -> Result<&'s [u8], ReadError> {
+        for _ in 0..3 {
+            let start = rest.iter().position(|&b| !is_blank(b));
+            let Some(start) = start else {
+                return Err(ReadError::line(line, Malformed::Expected("three coordinates")));
+            };
+            let length = rest[start..].iter().position(|&b| is_blank(b)).unwrap_or(rest.len() - start);
+            let (word, after) = rest[start..].split_at(length);
+            let value = number_at(line, word)?;
+            // Writing to a vector does not fail.
+            let _ = write!(self.plain, " {value}");
+            rest = after;
+        }
+        Ok(rest)
+    }
+
+    fn face(&mut self, line: u64, rest: &[u8]) -> Result<(), ReadError> {
         let seen = &mut self.seen;
         let place = Place::Line(line);
-        let total = self.counts.vertices;
-        let before = seen.corners;
-        let mut corners = std::mem::take(&mut seen.corner);
-        corners.clear();
-        let mut is_odd = false;
-        for word in words {
-            let mut parts = word.split(|&b| b == b'/');
-            let vertex = parts.next().unwrap_or_default();
-            if !is_integer(vertex) {
-                return Err(ReadError::line(line, Malformed::Number(shown(word))));
+        self.limits.check_faces(seen.faces as u64 + 1)?;
+        let mut face = std::mem::take(&mut seen.face);
+        face.clear();
+        let mut at = 0;
+        loop {
+            while rest.get(at).is_some_and(|&b| is_blank(b)) {
+                at += 1;
             }
-            let index = resolve(vertex, seen.vertices).unwrap_or(PolygonSoup::NO_VERTEX);
-            if u64::from(index) >= total {
-                is_odd = true;
-                seen.notes.add(NoteKind::IndexOutOfRange, place);
+            if at == rest.len() {
+                break;
             }
-            let at = before + corners.len() as u64;
-            let (uv, normal) = (parts.next(), parts.next());
-            let both = [seen.uvs.refer(uv, at), seen.normals.refer(normal, at)];
-            if both != [true; 2] {
-                seen.notes.add(NoteKind::AttributeOutOfRange, place);
+            let corner = corner::read(rest, &mut at, line)?;
+            face.push(corner.vertex.resolve(seen.vertices).unwrap_or(PolygonSoup::NO_VERTEX));
+            if corner.uv != Index::Missing || corner.normal != Index::Missing || seen.has_attributes() {
+                seen.refer(corner.uv, corner.normal, place);
             }
-            corners.push(index);
+            seen.corners += 1;
+            self.limits.check_corners(seen.corners as u64)?;
         }
-        seen.corners += corners.len() as u64;
-        self.limits.check_corners(seen.corners)?;
-        if corners.len() < 3 {
-            is_odd = true;
+        if face.len() < 3 {
             seen.notes.add(NoteKind::ShortFace, place);
         }
-        if is_odd {
-            seen.odd.push((seen.faces, corners.clone()));
+        if face.len() < 3 || face.iter().any(|&v| v as usize >= seen.vertices) {
+            seen.held.faces.push((seen.faces, line));
+            seen.held.polygons.push(face.iter().copied());
         } else {
-            self.faces.push(b'f');
-            for &v in &corners {
-                push_integer(&mut self.faces, v + 1);
+            self.plain.push(b'f');
+            if rest.iter().all(|b| b.is_ascii_digit() | (*b == b' ')) {
+                self.plain.extend_from_slice(rest);
+            } else {
+                for &v in &face {
+                    push_integer(&mut self.plain, v + 1);
+                }
             }
-            self.faces.push(b'\n');
+            self.plain.push(b'\n');
         }
-        seen.corner = corners;
+        seen.face = face;
         seen.faces += 1;
         Ok(())
     }
+}
+
+/// Where the third coordinate ends, if all three are made of what numbers are usually made of.
+fn plain_coordinates(rest: &[u8]) -> Option<usize> {
+    let mut at = 0;
+    for _ in 0..3 {
+        while matches!(rest.get(at), Some(b' ' | b'\t')) {
+            at += 1;
+        }
+        let start = at;
+        while matches!(rest.get(at), Some(b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E')) {
+            at += 1;
+        }
+        if at == start || rest.get(at).is_some_and(|&b| !is_blank(b)) {
+            return None;
+        }
+    }
+    Some(at)
+}
+
+/// The first numbers of a statement; zeros for those that are missing.
+fn numbers<const N: usize>(line: u64, rest: &[u8]) -> Result<[f64; N], ReadError> {
+    let mut values = [0.0; N];
+    for (value, word) in values.iter_mut().zip(words(rest)) {
+        *value = number_at(line, word)?;
+    }
+    Ok(values)
 }
 
 /// Appends a space and a number.
@@ -358,24 +329,72 @@ fn push_integer(text: &mut Vec<u8>, mut n: u32) {
     text.extend_from_slice(&digits[at - 1..]);
 }
 
-impl Seen {
-    fn start_group(&mut self, mut new: Group) {
-        let faces = self.faces;
-        if let Some(last) = self.groups.last_mut() {
-            last.faces.end = faces;
-            // A group without faces gives its place to the next.
-            if last.faces.is_empty() {
-                self.groups.pop();
-            }
-        }
-        new.faces = faces..faces;
-        self.groups.push(new);
-    }
+/// The line of the face that has the corner of this number. For a note: only files with something odd pay for it.
+fn line_of_corner(text: &[u8], corner: usize) -> u64 {
+    let mut before = 0;
+    let mut faces = Statements::new(text).map(|(line, statement)| {
+        let mut words = words(&statement);
+        let is_face = matches!(words.next(), Some(b"f" | b"fo"));
+        (line, if is_face { words.count() } else { 0 })
+    });
+    let found = faces.find(|(_, corners)| {
+        before += corners;
+        before > corner
+    });
+    found.map_or(1, |f| f.0)
 }
 
-fn rest_of(statement: &[u8], keyword: &[u8]) -> String {
-    let start = statement.windows(keyword.len()).position(|w| w == keyword).unwrap_or(0) + keyword.len();
-    String::from_utf8_lossy(statement.get(start..).unwrap_or_default()).trim().to_owned()
+impl Seen {
+    fn has_attributes(&self) -> bool {
+        self.uvs.is_used() || self.normals.is_used()
+    }
+
+    fn refer(&mut self, uv: Index, normal: Index, place: Place) {
+        let known = [self.uvs.refer(uv, self.corners), self.normals.refer(normal, self.corners)];
+        for _ in known.iter().filter(|k| !**k) {
+            self.notes.add(NoteKind::AttributeOutOfRange, place);
+        }
+    }
+
+    /// What follows the coordinates: a weight, which says nothing about a polygon mesh, or a colour.
+    fn color(&mut self, line: u64, rest: &[u8]) {
+        let mut color = [1.0; 4];
+        let mut count = 0;
+        for (c, word) in color.iter_mut().zip(words(rest)) {
+            let Some(value) = number(word) else {
+                return self.notes.add(NoteKind::Ignored, Place::Line(line));
+            };
+            *c = value as f32;
+            count += 1;
+        }
+        if count >= 3 {
+            self.colors.resize(self.vertices, [1.0; 4]);
+            self.colors.push(color);
+        }
+    }
+
+    fn name(&mut self, line: u64, rest: &[u8]) -> String {
+        let name = String::from_utf8_lossy(rest);
+        if matches!(name, std::borrow::Cow::Owned(_)) {
+            self.notes.add(NoteKind::NotText, Place::Line(line));
+        }
+        name.trim_matches(|c: char| c.is_whitespace() || c == '\0').to_owned()
+    }
+
+    fn start_group(&mut self, new: Group) {
+        self.end_group();
+        self.groups.push(Group { faces: self.faces..self.faces, ..new });
+    }
+
+    /// A group without faces gives its place to the next; one without name and material says nothing.
+    fn end_group(&mut self) {
+        let faces = self.faces;
+        let says_nothing = |g: &Group| g.faces.is_empty() || (g.name.is_empty() && g.material.is_none());
+        if let Some(last) = self.groups.last_mut() {
+            last.faces.end = faces;
+        }
+        self.groups.pop_if(|g| says_nothing(g));
+    }
 }
 
 impl Read for Filter<'_> {

@@ -23,6 +23,9 @@ use std::io::Write;
 /// ```
 pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
     check_writable(soup)?;
+    if soup.positions.is_empty() {
+        writeln!(sink, "# no vertices")?;
+    }
     let colors = per_vertex(&soup.vertex_colors, soup);
     for (i, p) in soup.positions.iter().enumerate() {
         write!(sink, "v {} {} {}", Number(p.x), Number(p.y), Number(p.z))?;
@@ -43,16 +46,24 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
         writeln!(sink, "vn {} {} {}", Number(n.x), Number(n.y), Number(n.z))?;
     }
 
-    let mut groups = soup.groups.iter().peekable();
+    let mut groups = soup.groups.iter().filter(|g| !g.faces.is_empty()).peekable();
+    let mut group_end = None;
     let mut material = None;
     let mut corner = 0;
     for (f, face) in soup.polygons.iter().enumerate() {
-        while let Some(group) = groups.next_if(|g| g.faces.start <= f) {
-            writeln!(sink, "g {}", one_line(&group.name))?;
-            if group.material != material {
-                material.clone_from(&group.material);
-                writeln!(sink, "usemtl {}", one_line(material.as_deref().unwrap_or_default()))?;
-            }
+        let mut group = None;
+        while let Some(next) = groups.next_if(|g| g.faces.start <= f) {
+            group = Some(next);
+        }
+        if let Some(group) = group {
+            writeln!(sink, "{}", statement("g", &group.name))?;
+            set_material(sink, &mut material, group.material.as_deref())?;
+            group_end = Some(group.faces.end);
+        } else if group_end.is_some_and(|end| end <= f) {
+            // Faces behind a group's end belong to none.
+            writeln!(sink, "g")?;
+            set_material(sink, &mut material, None)?;
+            group_end = None;
         }
         write!(sink, "f")?;
         for &v in face {
@@ -71,7 +82,10 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
         }
         writeln!(sink)?;
     }
-    let mut carried = vec![Lost::Groups];
+    let mut carried = Vec::new();
+    if carries_groups(soup) {
+        carried.push(Lost::Groups);
+    }
     carried.extend(uvs.map(|_| Lost::TextureCoordinates));
     carried.extend(colors.map(|_| Lost::Colors));
     if corner_normals.is_some() || vertex_normals.is_some() {
@@ -90,7 +104,41 @@ fn index<T>(data: &CornerData<T>, corner: usize) -> Option<u32> {
     ((i as usize) < data.values.len()).then(|| i + 1)
 }
 
-/// A name that cannot end its line, begin a comment or continue on the next line.
+/// Puts a material in use, or none, unless it is in use.
+fn set_material<'s>(
+    sink: &mut impl Write,
+    current: &mut Option<&'s str>,
+    new: Option<&'s str>,
+) -> std::io::Result<()> {
+    if *current != new {
+        *current = new;
+        writeln!(sink, "{}", statement("usemtl", new.unwrap_or_default()))?;
+    }
+    Ok(())
+}
+
+/// A statement with a name that cannot end its line, begin a comment or continue on the next line.
+fn statement(keyword: &str, name: &str) -> String {
+    let name = one_line(name);
+    if name.is_empty() { keyword.to_owned() } else { format!("{keyword} {name}") }
+}
+
 fn one_line(name: &str) -> String {
-    name.chars().map(|c| if c.is_control() || c == '#' || c == '\\' { '_' } else { c }).collect()
+    name.trim().chars().map(|c| if c.is_control() || c == '#' || c == '\\' { '_' } else { c }).collect()
+}
+
+/// Whether all groups read back as they are: in order, apart, of existing faces, with names that fit a line, and each
+/// saying something.
+fn carries_groups(soup: &PolygonSoup) -> bool {
+    let mut before = 0;
+    soup.groups.iter().all(|group| {
+        let names = [Some(&group.name), group.material.as_ref()];
+        let is_carried = before <= group.faces.start
+            && group.faces.start < group.faces.end
+            && names.into_iter().flatten().all(|n| one_line(n) == *n)
+            && group.material.as_deref() != Some("")
+            && (!group.name.is_empty() || group.material.is_some());
+        before = group.faces.end;
+        is_carried
+    }) && before <= soup.polygons.len()
 }

@@ -106,6 +106,11 @@ impl Element {
         self.properties.iter().map(|p| p.list.unwrap_or(p.scalar).size() as u64).sum()
     }
 
+    /// The bytes each of them takes in a binary file, if there are no lists.
+    pub(super) fn fixed_bytes(&self) -> Option<usize> {
+        self.properties.iter().map(|p| p.list.is_none().then_some(p.scalar.size())).sum()
+    }
+
     pub(super) fn find(&self, name: &[u8]) -> Option<usize> {
         self.properties.iter().position(|p| p.name == name)
     }

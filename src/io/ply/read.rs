@@ -1,10 +1,9 @@
 //! Reading PLY.
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
-use super::super::text::{Lines, number_at, shown, words};
 use super::super::{Limits, Loaded};
-use super::header::{self, Element, Encoding, Header, Scalar};
-use crate::{CornerData, PolygonSoup};
+use super::header::{self, Element, Encoding, Header};
+use crate::{PolygonSoup, Polygons};
 use glam::DVec3;
 
 /// Reads a PLY file: positions, vertex normals, colours and texture coordinates, faces of any degree. Elements may come in
@@ -31,12 +30,13 @@ pub fn read_ply(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
         soup: PolygonSoup::default(),
         uvs: Vec::new(),
         vertices: header.elements.iter().find(|e| e.name == b"vertex").map_or(0, |e| e.count),
+        has_vertices: false,
         limits: *limits,
         notes,
     };
     match header.encoding {
-        Encoding::Ascii => reader.read_ascii(&header, data)?,
-        Encoding::Little | Encoding::Big => reader.read_binary(&header, data)?,
+        Encoding::Ascii => super::ascii::read(&mut reader, &header, data)?,
+        Encoding::Little | Encoding::Big => super::binary::read(&mut reader, &header, data)?,
     }
     Ok(reader.finish())
 }
@@ -78,7 +78,7 @@ fn face_list(face: &Element) -> Option<usize> {
 }
 
 /// Where the values of a vertex go.
-struct VertexLayout {
+pub(super) struct VertexLayout {
     position: [usize; 3],
     normal: Option<[usize; 3]>,
     /// With the value that stands for one.
@@ -111,215 +111,90 @@ impl VertexLayout {
     }
 }
 
-struct Reader {
+/// What was read so far.
+pub(super) struct Reader {
     soup: PolygonSoup,
     uvs: Vec<[f64; 2]>,
+    /// How many vertices the header promises.
     vertices: u64,
+    /// Whether the element that holds them was met; any other of that name is left out.
+    has_vertices: bool,
     limits: Limits,
-    notes: Notes,
+    pub(super) notes: Notes,
 }
 
 impl Reader {
-    fn take_vertex(&mut self, layout: &VertexLayout, values: &[f64], place: Place) {
-        let three = |at: [usize; 3]| DVec3::from(at.map(|i| values[i]));
+    pub(super) fn take_vertex(&mut self, layout: &VertexLayout, value: impl Fn(usize) -> f64, place: Place) {
+        let three = |at: [usize; 3]| DVec3::from(at.map(&value));
         let p = three(layout.position);
         if !p.is_finite() {
             self.notes.add(NoteKind::NonFiniteCoordinate, place);
         }
         self.soup.positions.push(p);
-        self.soup.vertex_normals.extend(layout.normal.map(three));
-        if let Some((rgb, alpha, full)) = layout.color {
-            let [r, g, b] = rgb.map(|i| (values[i] / full) as f32);
-            self.soup.vertex_colors.push([r, g, b, alpha.map_or(1.0, |i| (values[i] / full) as f32)]);
+        if let Some(at) = layout.normal {
+            self.soup.vertex_normals.push(three(at));
         }
-        self.uvs.extend(layout.uv.map(|at| at.map(|i| values[i])));
+        if let Some((rgb, alpha, full)) = layout.color {
+            let part = |i: usize| (value(i) / full) as f32;
+            let [r, g, b] = rgb.map(part);
+            self.soup.vertex_colors.push([r, g, b, alpha.map_or(1.0, part)]);
+        }
+        if let Some(at) = layout.uv {
+            self.uvs.push(at.map(&value));
+        }
     }
 
-    fn take_face(&mut self, indices: &[f64], place: Place) -> Result<(), ReadError> {
+    pub(super) fn take_face(&mut self, corners: &[u32], place: Place) -> Result<(), ReadError> {
         self.limits.check_faces(self.soup.polygons.len() as u64 + 1)?;
-        self.limits.check_corners((self.soup.polygons.corners().len() + indices.len()) as u64)?;
-        let (vertices, notes) = (self.vertices as f64, &mut self.notes);
-        self.soup.polygons.push(indices.iter().map(|&i| {
-            let inside = i >= 0.0 && i < vertices;
-            if !inside {
-                notes.add(NoteKind::IndexOutOfRange, place);
-            }
-            // What does not fit becomes the index that names nothing.
-            if i >= 0.0 { i as u32 } else { PolygonSoup::NO_VERTEX }
-        }));
-        if indices.len() < 3 {
+        self.limits.check_corners((self.soup.polygons.corners().len() + corners.len()) as u64)?;
+        for _ in corners.iter().filter(|&&v| u64::from(v) >= self.vertices) {
+            self.notes.add(NoteKind::IndexOutOfRange, place);
+        }
+        if corners.len() < 3 {
             self.notes.add(NoteKind::ShortFace, place);
         }
+        self.soup.polygons.push(corners.iter().copied());
         Ok(())
     }
 
-    /// What an element is to be read for.
-    fn role(&mut self, element: &Element, place: Place) -> Role {
-        if element.name == b"vertex"
-            && self.soup.positions.is_empty()
-            && let Some(layout) = VertexLayout::of(element)
-        {
-            if !layout.is_complete {
+    /// What an element is to be read for; `room` is the number of bytes left.
+    pub(super) fn role(&mut self, element: &Element, place: Place, room: usize) -> Role {
+        if element.name == b"vertex" && !std::mem::replace(&mut self.has_vertices, true) {
+            // The check of the header has seen that there is a layout.
+            if let Some(layout) = VertexLayout::of(element) {
+                if !layout.is_complete {
+                    self.notes.add(NoteKind::Ignored, place);
+                }
+                self.soup.positions.reserve(element.count as usize);
+                return Role::Vertex(layout);
+            }
+        }
+        if let Some(list) = face_list(element).filter(|_| element.name == b"face") {
+            if element.properties.len() > 1 {
                 self.notes.add(NoteKind::Ignored, place);
             }
-            self.soup.positions.reserve(element.count as usize);
-            return Role::Vertex(layout);
-        }
-        match face_list(element).filter(|_| element.name == b"face") {
-            Some(list) => {
-                if element.properties.len() > 1 {
-                    self.notes.add(NoteKind::Ignored, place);
-                }
-                Role::Face(list)
+            if self.soup.polygons.is_empty() {
+                let count = element.count as usize;
+                self.soup.polygons = Polygons::with_capacity(count, (3 * count).min(room));
             }
-            None => {
-                if element.count > 0 {
-                    self.notes.add(NoteKind::Ignored, place);
-                }
-                Role::Other
-            }
+            return Role::Face(list);
         }
-    }
-
-    fn read_binary(&mut self, header: &Header, data: &[u8]) -> Result<(), ReadError> {
-        let big = header.encoding == Encoding::Big;
-        let mut at = 0;
-        let mut values: Vec<f64> = Vec::new();
-        let mut list: Vec<f64> = Vec::new();
-        for element in &header.elements {
-            let role = self.role(element, Place::Byte((header.end + at) as u64));
-            for _ in 0..element.count {
-                let start = header.end + at;
-                let truncated = || ReadError::byte(start, Malformed::Truncated("an element"));
-                values.clear();
-                for (i, property) in element.properties.iter().enumerate() {
-                    let Some(count) = property.list else {
-                        values.push(property.scalar.decode(&data[at..], big).ok_or_else(truncated)?);
-                        at += property.scalar.size();
-                        continue;
-                    };
-                    let length = count.decode(&data[at..], big).ok_or_else(truncated)?;
-                    at += count.size();
-                    if length < 0.0 {
-                        return Err(ReadError::byte(
-                            start,
-                            Malformed::Expected("a list of no negative length"),
-                        ));
-                    }
-                    let size = property.scalar.size();
-                    // Below 2^32 times 8: fits.
-                    let bytes =
-                        data.get(at..).and_then(|d| d.get(..length as usize * size)).ok_or_else(truncated)?;
-                    at += bytes.len();
-                    if matches!(role, Role::Face(l) if l == i) {
-                        list.clear();
-                        list.extend(bytes.chunks_exact(size).filter_map(|b| property.scalar.decode(b, big)));
-                    }
-                    // Keeps the places of later values.
-                    values.push(0.0);
-                }
-                let place = Place::Byte(start as u64);
-                match &role {
-                    Role::Vertex(layout) => self.take_vertex(layout, &values, place),
-                    Role::Face(_) => self.take_face(&list, place)?,
-                    Role::Other => {}
-                }
-            }
+        if element.count > 0 {
+            self.notes.add(NoteKind::Ignored, place);
         }
-        if at < data.len() {
-            self.notes.add(NoteKind::TrailingData, Place::Byte((header.end + at) as u64));
-        }
-        Ok(())
-    }
-
-    fn read_ascii(&mut self, header: &Header, data: &[u8]) -> Result<(), ReadError> {
-        let mut lines = Lines::new(data).map(|(n, l)| (n + header.lines, l));
-        let mut last = header.lines;
-        let mut in_comment = false;
-        let mut next_line = |notes: &mut Notes| {
-            for (number, line) in lines.by_ref() {
-                let content = line.trim_ascii();
-                if in_comment || content.starts_with(b"{") || content.starts_with(b"comment") {
-                    in_comment = (in_comment || content.starts_with(b"{")) && !content.contains(&b'}');
-                    notes.add(NoteKind::StrayComment, Place::Line(number));
-                } else if !content.is_empty() {
-                    last = number;
-                    // Remarks in braces may follow the values.
-                    let end = content.iter().position(|&b| b == b'{').unwrap_or(content.len());
-                    if end < content.len() {
-                        notes.add(NoteKind::StrayComment, Place::Line(number));
-                    }
-                    return Ok((number, &content[..end]));
-                }
-            }
-            Err(ReadError::line(last, Malformed::Truncated("the elements")))
-        };
-        let (mut values, mut list): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-        for element in &header.elements {
-            let role = self.role(element, Place::Line(header.lines));
-            for _ in 0..element.count {
-                if element.properties.is_empty() {
-                    continue;
-                }
-                let (line, content) = next_line(&mut self.notes)?;
-                let mut words = words(content);
-                let mut value = |whole: bool| {
-                    let Some(word) = words.next() else {
-                        return Err(ReadError::line(line, Malformed::Truncated("an element")));
-                    };
-                    let value = number_at(line, word)?;
-                    let fits = !whole || value.fract() == 0.0;
-                    if fits { Ok(value) } else { Err(ReadError::line(line, Malformed::Number(shown(word)))) }
-                };
-                let whole = |scalar: Scalar| scalar.is_integer();
-                values.clear();
-                for (i, property) in element.properties.iter().enumerate() {
-                    if property.list.is_none() {
-                        values.push(value(whole(property.scalar))?);
-                        continue;
-                    }
-                    let length = value(true)?;
-                    if !(0.0..=content.len() as f64).contains(&length) {
-                        return Err(ReadError::line(line, Malformed::Truncated("a list")));
-                    }
-                    let mut items = Vec::new();
-                    for _ in 0..length as usize {
-                        items.push(value(whole(property.scalar))?);
-                    }
-                    if matches!(role, Role::Face(l) if l == i) {
-                        list = items;
-                    }
-                    values.push(0.0);
-                }
-                let place = Place::Line(line);
-                if words.next().is_some() {
-                    return Err(ReadError::line(line, Malformed::Expected("no more values than properties")));
-                }
-                match &role {
-                    Role::Vertex(layout) => self.take_vertex(layout, &values, place),
-                    Role::Face(_) => self.take_face(&list, place)?,
-                    Role::Other => {}
-                }
-            }
-        }
-        if let Ok((line, _)) = next_line(&mut self.notes) {
-            self.notes.add(NoteKind::TrailingData, Place::Line(line));
-        }
-        Ok(())
+        Role::Other
     }
 
     fn finish(mut self) -> Loaded {
         if !self.uvs.is_empty() {
-            let corners = self.soup.polygons.corners().iter();
-            let indices =
-                corners.map(|&v| if (v as usize) < self.uvs.len() { v } else { CornerData::<f64>::NONE });
-            self.soup.corner_uvs = Some(CornerData { indices: indices.collect(), values: self.uvs });
+            self.soup.corner_uvs = Some(super::super::uvs_of_vertices(&self.soup.polygons, self.uvs));
         }
         Loaded { soup: self.soup, notes: self.notes.finish() }
     }
 }
 
-enum Role {
+/// What an element is read for.
+pub(super) enum Role {
     Vertex(VertexLayout),
     /// With the property that holds the vertex indices.
     Face(usize),

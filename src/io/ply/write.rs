@@ -34,6 +34,16 @@ pub fn write_ply(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, glam::DVec3, io::write_ply_big_endian};
+/// let soup = PolygonSoup::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], Polygons::from_triangles(&[[0, 1, 2]]));
+/// let mut file = Vec::new();
+/// write_ply_big_endian(&soup, &mut file)?;
+/// assert!(file.starts_with(b"ply\nformat binary_big_endian 1.0\n"));
+/// # Ok::<(), meshwright::io::WriteError>(())
+/// ```
 pub fn write_ply_big_endian(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
     write(soup, "binary_big_endian", sink, |sink, v| match v {
         Value::Double(x) => sink.write_all(&x.to_be_bytes()),
@@ -48,6 +58,16 @@ pub fn write_ply_big_endian(soup: &PolygonSoup, sink: &mut impl Write) -> Result
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, glam::DVec3, io::write_ply_ascii};
+/// let soup = PolygonSoup::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], Polygons::from_triangles(&[[0, 1, 2]]));
+/// let mut file = Vec::new();
+/// write_ply_ascii(&soup, &mut file)?;
+/// assert!(file.ends_with(b"end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+/// # Ok::<(), meshwright::io::WriteError>(())
+/// ```
 pub fn write_ply_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
     let mut separator = "";
     write(soup, "ascii", sink, |sink, v| {
@@ -83,7 +103,8 @@ fn write<W: Write>(
     let normals = per_vertex(&soup.vertex_normals, soup);
     let colors = per_vertex(&soup.vertex_colors, soup);
     let byte = |c: f32| (c * 255.0).round() as u8;
-    let bytes = colors.is_some_and(|c| c.iter().flatten().all(|&c| f32::from(byte(c)) / 255.0 == c));
+    let bytes = colors
+        .is_some_and(|c| c.iter().flatten().all(|&c| (f32::from(byte(c)) / 255.0).to_bits() == c.to_bits()));
     // Texture coordinates per vertex, where corners refer to them so.
     let corners = soup.polygons.corners();
     let uvs =

@@ -1,0 +1,45 @@
+//! Lines of an OBJ file as statements.
+
+use super::super::text::{Lines, before_comment};
+use std::borrow::Cow;
+
+/// Statements with the number of their first line: comments taken out, lines joined that end in a backslash.
+pub(super) struct Statements<'a> {
+    lines: Lines<'a>,
+}
+
+impl<'a> Statements<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { lines: Lines::new(text) }
+    }
+
+    fn joined(&mut self, first: &[u8]) -> Vec<u8> {
+        let mut joined = first.to_vec();
+        for (_, line) in self.lines.by_ref() {
+            let line = before_comment(line);
+            let (part, more) = line.strip_suffix(b"\\").map_or((line, false), |l| (l, true));
+            joined.push(b' ');
+            joined.extend_from_slice(part);
+            if !more {
+                break;
+            }
+        }
+        joined
+    }
+}
+
+impl<'a> Iterator for Statements<'a> {
+    type Item = (u64, Cow<'a, [u8]>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if let Some((number, line)) = self.lines.next_plain() {
+            return Some((number, Cow::Borrowed(line)));
+        }
+        let (number, line) = self.lines.next()?;
+        let line = before_comment(line);
+        Some(match line.strip_suffix(b"\\") {
+            Some(first) => (number, Cow::Owned(self.joined(first))),
+            None => (number, Cow::Borrowed(line)),
+        })
+    }
+}
