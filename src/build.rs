@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::indexed::list;
-use crate::matching::{Matching, NONE};
+use crate::matching::{Matching, NONE, Pairing};
 use crate::topology::Topology;
 use crate::{IndexedMesh, Mesh, Polygons};
 use glam::DVec3;
@@ -85,13 +85,14 @@ impl Mesh {
     /// ```
     pub fn build(pool: &IndexedMesh) -> Result<Self, BuildError> {
         let matching = Matching::new(pool.vertex_count(), pool.polygons());
-        if matching.more.is_empty()
-            && !matching.any_conflict
-            && let Some(mesh) = assemble(pool, &matching)
-        {
-            return Ok(mesh);
+        if matching.more.is_empty() && !matching.any_conflict {
+            let pairing = matching.into_pairing();
+            if let Some(mesh) = assemble(pool, &pairing) {
+                return Ok(mesh);
+            }
         }
-        Err(BuildError { defects: defects(&Topology::with_matching(pool, matching)) })
+        // Only a refusal needs the edges again.
+        Err(BuildError { defects: defects(&pool.topology()) })
     }
 
     /// The vertex pool of the mesh, in the order of the input for what survived, with each face's first corner kept.
@@ -128,14 +129,14 @@ impl From<&Mesh> for IndexedMesh {
     }
 }
 
-/// Lays out the mesh of a matching without conflicts and 3+ edges; `None` if a vertex is pinched or a face is there
+/// Lays out the mesh of a pairing without conflicts and 3+ edges; `None` if a vertex is pinched or a face is there
 /// twice.
-pub(crate) fn assemble(pool: &IndexedMesh, matching: &Matching) -> Option<Mesh> {
+pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
     let polygons = pool.polygons();
-    let halfedges = 2 * (matching.edges.len() + 1);
+    let halfedges = 2 * (pairing.edges + 1);
     let mut mesh = Mesh {
         vertices: Arena::filled(pool.vertex_count()),
-        edges: Arena::filled(matching.edges.len()),
+        edges: Arena::filled(pairing.edges),
         faces: Arena::filled(pool.face_count()),
         // Every entry that means anything is written below.
         next: vec![0; halfedges],
@@ -149,7 +150,7 @@ pub(crate) fn assemble(pool: &IndexedMesh, matching: &Matching) -> Option<Mesh> 
     };
     // Slot 0 of every column is slotmap's sentinel, so input index i lives in slot i + 1.
     mesh.face_halfedge.push(NONE);
-    let mut uses = matching.use_of.as_slice();
+    let mut uses = pairing.use_of.as_slice();
     for (f, corners) in polygons.iter().enumerate() {
         let (own, rest) = uses.split_at(corners.len());
         uses = rest;
@@ -165,7 +166,7 @@ pub(crate) fn assemble(pool: &IndexedMesh, matching: &Matching) -> Option<Mesh> 
             before = h;
         }
     }
-    (link_boundary(&mut mesh, matching) && each_vertex_has_one_fan(&mesh)).then_some(mesh)
+    (link_boundary(&mut mesh, &pairing.open) && each_vertex_has_one_fan(&mesh)).then_some(mesh)
 }
 
 fn shifted(values: &[DVec3]) -> Vec<DVec3> {
@@ -176,11 +177,10 @@ fn shifted(values: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// Links the half-edges without a face into loops; `false` if two of them leave one vertex.
-fn link_boundary(mesh: &mut Mesh, matching: &Matching) -> bool {
-    let open = || matching.edges.iter().enumerate().filter(|(_, e)| e.second().is_none());
-    for (i, _) in open() {
-        // The first use of an edge is its even half-edge, so the boundary half-edge is the odd one.
-        let h = 2 * i + 3;
+fn link_boundary(mesh: &mut Mesh, open: &[u32]) -> bool {
+    // The first use of an edge is its even half-edge, so the boundary half-edge is the odd one.
+    let boundary = || open.iter().map(|&e| 2 * e as usize + 3);
+    for h in boundary() {
         let v = mesh.origin[mesh.next[h ^ 1] as usize];
         mesh.origin[h] = v;
         let out = &mut mesh.vertex_halfedge[v as usize];
@@ -189,8 +189,7 @@ fn link_boundary(mesh: &mut Mesh, matching: &Matching) -> bool {
         }
         *out = h as u32;
     }
-    for (i, _) in open() {
-        let h = 2 * i + 3;
+    for h in boundary() {
         let next = mesh.vertex_halfedge[mesh.origin[h ^ 1] as usize];
         mesh.next[h] = next;
         mesh.prev[next as usize] = h as u32;

@@ -42,6 +42,18 @@ impl EdgeUse {
     }
 }
 
+/// What is left of a matching of which every edge has one or two uses: enough to build, and a third of the memory, which
+/// the columns of the mesh then take over from the allocator.
+#[derive(Clone, Debug)]
+pub(crate) struct Pairing {
+    /// The number of edges.
+    pub(crate) edges: usize,
+    /// For each corner, twice its edge, plus one unless it was the edge's first use.
+    pub(crate) use_of: Vec<u32>,
+    /// The edges with one use, ascending.
+    pub(crate) open: Vec<u32>,
+}
+
 /// The edges of an indexed mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Matching {
@@ -130,6 +142,12 @@ impl Matching {
                 self.edges.push(EdgeUse { hi, link: NONE, first: entry, second: NONE });
             }
         }
+    }
+
+    /// Lets go of all that a build does not need.
+    pub(crate) fn into_pairing(self) -> Pairing {
+        let open = (0..).zip(&self.edges).filter(|(_, e)| e.second == NONE).map(|(i, _)| i).collect();
+        Pairing { edges: self.edges.len(), use_of: self.use_of, open }
     }
 
     /// The edge of a corner's half-edge.

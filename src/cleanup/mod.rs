@@ -118,12 +118,13 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
         control.report("build", 0.5)?;
         let normals = pool.welded_normals();
         let indexed = pool.lend(normals);
-        if let Some(value) = assemble(&indexed, &matching) {
-            pool.take_back(indexed);
+        let built = assemble(&indexed, &matching.into_pairing());
+        pool.take_back(indexed);
+        if let Some(value) = built {
             let (report, maps) = pool.account();
             return Ok(Outcome { value, report, maps });
         }
-        pool.take_back(indexed);
+        matching = Matching::new(pool.positions.len(), &pool.polygons);
     }
     control.report("drop duplicates", 0.5)?;
     if drop_duplicates(&mut pool, &matching) {
