@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::indexed::list;
-use crate::matching::{Matching, NONE, Pairing};
+use crate::matching::{Chains, NONE, Pairing};
 use crate::topology::Topology;
 use crate::{IndexedMesh, Mesh, Polygons};
 use glam::DVec3;
@@ -84,12 +84,11 @@ impl Mesh {
     /// # Ok::<(), meshwright::IndexedError>(())
     /// ```
     pub fn build(pool: &IndexedMesh) -> Result<Self, BuildError> {
-        let matching = Matching::new(pool.vertex_count(), pool.polygons());
-        if matching.more.is_empty() && !matching.any_conflict {
-            let pairing = matching.into_pairing();
-            if let Some(mesh) = assemble(pool, &pairing) {
-                return Ok(mesh);
-            }
+        let chains = Chains::new(pool.vertex_count(), pool.polygons());
+        if chains.is_paired()
+            && let Some(mesh) = assemble(pool, &chains.into_pairing())
+        {
+            return Ok(mesh);
         }
         // Only a refusal needs the edges again.
         Err(BuildError { defects: defects(&pool.topology()) })

@@ -6,19 +6,147 @@
 
 use crate::Polygons;
 
+/// No corner, face or half-edge.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// How long a chain may grow before its vertex counts as a hub.
 const MAX_CHAIN: usize = 32;
 
-/// One edge: who uses it, in the order of corners. Edges are numbered in the order of their first use (those at hubs
-/// after all others).
+/// The matching in the making. Edges are numbered in the order of their first use (those at hubs after all others).
+#[derive(Clone, Debug)]
+pub(crate) struct Chains {
+    edges: Vec<Link>,
+    /// For each corner, twice its edge, plus one unless it was the edge's first use.
+    use_of: Vec<u32>,
+    /// `(edge, corner)` of third and later uses, sorted.
+    more: Vec<(u32, u32)>,
+    /// Whether some edge's first two uses run the same way.
+    any_conflict: bool,
+}
+
+/// An edge in the chain of its lower vertex. Vertices and edges are numbered below 2^31, which leaves a bit in each word.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    /// The higher vertex; the top bit tells whether the edge has a second use.
+    hi: u32,
+    /// The next edge of the chain; the top bit tells whether the first use runs downwards.
+    next: u32,
+}
+
+const TOP: u32 = 1 << 31;
+const END: u32 = TOP - 1;
+
+impl Chains {
+    /// Matches all corners. Indices must be below `vertex_count`, and no face may repeat a corner in a row.
+    /// O(corners), with a sort of the edges at hubs; 8 bytes an edge and 4 a corner.
+    pub(crate) fn new(vertex_count: usize, polygons: &Polygons) -> Self {
+        let corners = polygons.corners();
+        let mut m = Self {
+            edges: Vec::with_capacity(corners.len() / 2 + corners.len() / 16 + 4),
+            use_of: vec![0; corners.len()],
+            more: Vec::new(),
+            any_conflict: false,
+        };
+        let mut heads = vec![END; vertex_count];
+        let mut at_hubs: Vec<(u32, u32, u32)> = Vec::new();
+        for_each_halfedge(polygons, |corner, a, b| m.add(&mut heads, &mut at_hubs, corner, a, b));
+        m.add_hubs(at_hubs);
+        m.more.sort_unstable();
+        m
+    }
+
+    /// Whether every edge has one use, or two that run opposite ways.
+    pub(crate) fn is_paired(&self) -> bool {
+        self.more.is_empty() && !self.any_conflict
+    }
+
+    #[inline]
+    fn add(&mut self, heads: &mut [u32], at_hubs: &mut Vec<(u32, u32, u32)>, corner: u32, a: u32, b: u32) {
+        let (lo, hi, down) = if a < b { (a, b, 0) } else { (b, a, TOP) };
+        let head = &mut heads[lo as usize];
+        let mut edge = *head;
+        let mut length = 0;
+        while edge != END {
+            let link = self.edges[edge as usize];
+            if link.hi & !TOP == hi {
+                return self.use_again(edge, corner, down);
+            }
+            edge = link.next & !TOP;
+            length += 1;
+            if length == MAX_CHAIN {
+                return at_hubs.push((lo, hi, corner << 1 | down >> 31));
+            }
+        }
+        self.use_of[corner as usize] = (self.edges.len() as u32) << 1;
+        let next = std::mem::replace(head, self.edges.len() as u32);
+        self.edges.push(Link { hi, next: next | down });
+    }
+
+    fn use_again(&mut self, edge: u32, corner: u32, down: u32) {
+        self.use_of[corner as usize] = edge << 1 | 1;
+        let link = &mut self.edges[edge as usize];
+        if link.hi & TOP == 0 {
+            link.hi |= TOP;
+            self.any_conflict |= link.next & TOP == down;
+        } else {
+            self.more.push((edge, corner));
+        }
+    }
+
+    /// Half-edges at full chains that the chain does not hold: a chain that is full never changes, so they are apart
+    /// from every edge so far.
+    fn add_hubs(&mut self, mut at_hubs: Vec<(u32, u32, u32)>) {
+        at_hubs.sort_unstable();
+        let mut last = None;
+        for (lo, hi, entry) in at_hubs {
+            let (corner, down) = (entry >> 1, entry << 31);
+            if last == Some((lo, hi)) {
+                self.use_again(self.edges.len() as u32 - 1, corner, down);
+            } else {
+                last = Some((lo, hi));
+                self.use_of[corner as usize] = (self.edges.len() as u32) << 1;
+                self.edges.push(Link { hi, next: END | down });
+            }
+        }
+    }
+
+    /// Lets go of all that a build does not need.
+    pub(crate) fn into_pairing(self) -> Pairing {
+        let open = (0..).zip(&self.edges).filter(|(_, e)| e.hi & TOP == 0).map(|(i, _)| i).collect();
+        Pairing { edges: self.edges.len(), use_of: self.use_of, open }
+    }
+}
+
+/// Calls `f` with every corner, its vertex and the next corner's.
+#[inline]
+fn for_each_halfedge(polygons: &Polygons, mut f: impl FnMut(u32, u32, u32)) {
+    let mut corner = 0;
+    for face in polygons.iter() {
+        let mut here = face.first().copied().unwrap_or(0);
+        for i in 0..face.len() {
+            let there = face[if i + 1 == face.len() { 0 } else { i + 1 }];
+            f(corner, here, there);
+            here = there;
+            corner += 1;
+        }
+    }
+}
+
+/// What is left of a matching of which every edge has one or two uses: enough to build, and little memory, so that the
+/// columns of the mesh can take over the rest from the allocator.
+#[derive(Clone, Debug)]
+pub(crate) struct Pairing {
+    /// The number of edges.
+    pub(crate) edges: usize,
+    /// For each corner, twice its edge, plus one unless it was the edge's first use.
+    pub(crate) use_of: Vec<u32>,
+    /// The edges with one use, ascending.
+    pub(crate) open: Vec<u32>,
+}
+
+/// One edge: who uses it, in the order of corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeUse {
-    /// The higher vertex.
-    hi: u32,
-    /// The next edge with the same lower vertex.
-    link: u32,
     /// The first corner, times two, plus one if it runs from the higher to the lower vertex.
     first: u32,
     /// The second, likewise; [`NONE`] on an edge with one face.
@@ -42,18 +170,6 @@ impl EdgeUse {
     }
 }
 
-/// What is left of a matching of which every edge has one or two uses: enough to build, and a third of the memory, which
-/// the columns of the mesh then take over from the allocator.
-#[derive(Clone, Debug)]
-pub(crate) struct Pairing {
-    /// The number of edges.
-    pub(crate) edges: usize,
-    /// For each corner, twice its edge, plus one unless it was the edge's first use.
-    pub(crate) use_of: Vec<u32>,
-    /// The edges with one use, ascending.
-    pub(crate) open: Vec<u32>,
-}
-
 /// The edges of an indexed mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Matching {
@@ -67,87 +183,22 @@ pub(crate) struct Matching {
 }
 
 impl Matching {
-    /// Matches all corners. Indices must be below `vertex_count`, and no face may repeat a corner in a row.
-    /// O(corners), with a sort of the edges at hubs; 16 bytes an edge and 4 a corner.
+    /// Matches all corners, as [`Chains::new`].
     pub(crate) fn new(vertex_count: usize, polygons: &Polygons) -> Self {
-        let corners = polygons.corners();
-        let mut m = Self {
-            edges: Vec::with_capacity(corners.len() / 2 + corners.len() / 16 + 4),
-            use_of: vec![0; corners.len()],
-            more: Vec::new(),
-            any_conflict: false,
-        };
-        let mut heads = vec![NONE; vertex_count];
-        let mut at_hubs: Vec<(u32, u32, u32)> = Vec::new();
-        let mut start = 0;
-        for face in polygons.iter() {
-            let mut here = face.first().copied().unwrap_or(0);
-            for i in 0..face.len() {
-                let there = face[if i + 1 == face.len() { 0 } else { i + 1 }];
-                m.add(&mut heads, &mut at_hubs, (start + i) as u32, here, there);
-                here = there;
+        let Chains { edges, use_of, more, any_conflict } = Chains::new(vertex_count, polygons);
+        let mut uses = vec![EdgeUse { first: NONE, second: NONE }; edges.len()];
+        drop(edges);
+        for_each_halfedge(polygons, |corner, a, b| {
+            let edge = &mut uses[(use_of[corner as usize] >> 1) as usize];
+            let entry = corner << 1 | u32::from(a > b);
+            // Corners come in order, so the third and later ones find both places taken.
+            if edge.first == NONE {
+                edge.first = entry;
+            } else if edge.second == NONE {
+                edge.second = entry;
             }
-            start += face.len();
-        }
-        m.add_hubs(at_hubs);
-        m.more.sort_unstable();
-        m
-    }
-
-    fn add(&mut self, heads: &mut [u32], at_hubs: &mut Vec<(u32, u32, u32)>, corner: u32, a: u32, b: u32) {
-        let (lo, hi, down) = if a < b { (a, b, 0) } else { (b, a, 1) };
-        let entry = corner << 1 | down;
-        let head = &mut heads[lo as usize];
-        let mut edge = *head;
-        let mut length = 0;
-        while edge != NONE {
-            let e = &self.edges[edge as usize];
-            if e.hi == hi {
-                return self.use_again(edge, entry);
-            }
-            edge = e.link;
-            length += 1;
-            if length == MAX_CHAIN {
-                return at_hubs.push((lo, hi, entry));
-            }
-        }
-        self.use_of[corner as usize] = (self.edges.len() as u32) << 1;
-        let link = std::mem::replace(head, self.edges.len() as u32);
-        self.edges.push(EdgeUse { hi, link, first: entry, second: NONE });
-    }
-
-    fn use_again(&mut self, edge: u32, entry: u32) {
-        let e = &mut self.edges[edge as usize];
-        let corner = entry >> 1;
-        self.use_of[corner as usize] = edge << 1 | 1;
-        if e.second == NONE {
-            e.second = entry;
-            self.any_conflict |= e.is_conflict();
-        } else {
-            self.more.push((edge, corner));
-        }
-    }
-
-    /// Half-edges at full chains that the chain does not hold: a chain that is full never changes, so they are apart
-    /// from every edge so far.
-    fn add_hubs(&mut self, mut at_hubs: Vec<(u32, u32, u32)>) {
-        at_hubs.sort_unstable();
-        let mut last = None;
-        for (lo, hi, entry) in at_hubs {
-            if last == Some((lo, hi)) {
-                self.use_again(self.edges.len() as u32 - 1, entry);
-            } else {
-                last = Some((lo, hi));
-                self.use_of[(entry >> 1) as usize] = (self.edges.len() as u32) << 1;
-                self.edges.push(EdgeUse { hi, link: NONE, first: entry, second: NONE });
-            }
-        }
-    }
-
-    /// Lets go of all that a build does not need.
-    pub(crate) fn into_pairing(self) -> Pairing {
-        let open = (0..).zip(&self.edges).filter(|(_, e)| e.second == NONE).map(|(i, _)| i).collect();
-        Pairing { edges: self.edges.len(), use_of: self.use_of, open }
+        });
+        Self { edges: uses, use_of, more, any_conflict }
     }
 
     /// The edge of a corner's half-edge.

@@ -15,7 +15,7 @@ pub use facts::{Facts, inspect};
 pub use weld::propose_tolerance;
 
 use crate::build::assemble;
-use crate::matching::{Matching, NONE};
+use crate::matching::{Chains, Matching, NONE};
 use crate::report::{Element, Kind, Maps, Outcome, Record, Step, StepSummary};
 use crate::topology::{FaceOf, duplicate_faces, flip_faces, next_corner, orient};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
@@ -112,21 +112,21 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
     let mut control = options.control;
     let mut pool = Pool::new(soup, options.weld, &mut control)?;
     control.report("match edges", 0.4)?;
-    let mut matching = Matching::new(pool.positions.len(), &pool.polygons);
-    if matching.more.is_empty() && !matching.any_conflict {
+    let chains = Chains::new(pool.positions.len(), &pool.polygons);
+    if chains.is_paired() {
         // Most files need no more: try before working out what is wrong.
         control.report("build", 0.5)?;
         let normals = pool.welded_normals();
         let indexed = pool.lend(normals);
-        let built = assemble(&indexed, &matching.into_pairing());
+        let built = assemble(&indexed, &chains.into_pairing());
         pool.take_back(indexed);
         if let Some(value) = built {
             let (report, maps) = pool.account();
             return Ok(Outcome { value, report, maps });
         }
-        matching = Matching::new(pool.positions.len(), &pool.polygons);
     }
     control.report("drop duplicates", 0.5)?;
+    let mut matching = Matching::new(pool.positions.len(), &pool.polygons);
     if drop_duplicates(&mut pool, &matching) {
         matching = Matching::new(pool.positions.len(), &pool.polygons);
     }
