@@ -199,6 +199,18 @@ impl IndexedMesh {
     ///
     /// # Errors
     /// [`IndexedDefect::NonFinitePosition`] for every result that is not finite; then nothing has changed.
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// let mut pool = pool;
+    /// pool.map_positions(|p| p * 2.0)?;
+    /// assert_eq!(pool.area(), 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn map_positions(&mut self, f: impl FnMut(DVec3) -> DVec3) -> Result<(), IndexedError> {
         let moved: Vec<DVec3> = self.positions.iter().copied().map(f).collect();
         let defects: Vec<_> = non_finite(&moved).collect();

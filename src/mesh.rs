@@ -152,6 +152,19 @@ impl Mesh {
     ///
     /// # Errors
     /// [`SetError`] on a dead key or a position that is not finite; nothing has changed then.
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// let v = mesh.vertices().next().unwrap();
+    /// mesh.set_position(v, DVec3::Z)?;
+    /// assert!(mesh.set_position(v, DVec3::NAN).is_err());
+    /// assert_eq!(mesh.position(v), DVec3::Z);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn set_position(&mut self, v: VertexKey, position: DVec3) -> Result<(), SetError> {
         let slot = self.vertex_slot(v).ok_or(SetError::Missing(v))?;
         if !position.is_finite() {

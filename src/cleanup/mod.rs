@@ -151,6 +151,16 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, cleanup::{Weld, index}, glam::DVec3};
+/// let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X];
+/// let soup = PolygonSoup::new(points, Polygons::from_triangles(&[[0, 1, 2], [1, 3, 2]]));
+/// let indexed = index(&soup, Weld::Exact)?;
+/// assert_eq!((indexed.value.vertex_count(), indexed.value.face_count()), (3, 1));
+/// # Ok::<(), meshwright::cleanup::CleanError>(())
+/// ```
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
     let mut pool = Pool::new(soup, weld, &mut Control::none())?;
     let normals = pool.welded_normals();

@@ -10,6 +10,14 @@ use std::collections::HashMap;
 /// Proposes a weld tolerance from the data: a few units in the last place of single precision at the largest
 /// coordinate (the noise of a program or file format that stores `f32`), but no more than a quarter of the shortest
 /// edge that has a length. Zero, which means an exact weld, if there is no such edge. O(corners).
+///
+/// # Examples
+/// ```
+/// use meshwright::{PolygonSoup, Polygons, cleanup::propose_tolerance, glam::DVec3};
+/// let points = vec![DVec3::ZERO, DVec3::X * 100.0, DVec3::Y * 100.0];
+/// let soup = PolygonSoup::new(points, Polygons::from_triangles(&[[0, 1, 2]]));
+/// assert!((2e-5..3e-5).contains(&propose_tolerance(&soup)));
+/// ```
 pub fn propose_tolerance(soup: &PolygonSoup) -> f64 {
     let finite = soup.positions.iter().filter(|p| p.is_finite());
     let largest = finite.fold(0.0f64, |m, p| m.max(p.abs().max_element()));

@@ -66,6 +66,17 @@ impl Mesh {
 
     /// The unit normal of a vertex computed from its faces, or `None` on a dead key; zero where there is no face or
     /// the faces cancel. O(corners of the faces around it).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// let v = mesh.vertices().next().unwrap();
+    /// assert_eq!(mesh.vertex_normal(v, NormalWeight::Area), Some(DVec3::Z));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn vertex_normal(&self, v: VertexKey, weight: NormalWeight) -> Option<DVec3> {
         let slot = self.vertex_slot(v)?;
         let corners =
@@ -89,6 +100,17 @@ impl Mesh {
 
     /// Computes a normal for every vertex from its faces and lets the mesh carry them: [`normal`](Self::normal) reads
     /// them. Zero where there is no face or the faces cancel. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// mesh.compute_normals(NormalWeight::Angle);
+    /// assert!(mesh.vertices().all(|v| mesh.normal(v) == Some(DVec3::Z)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn compute_normals(&mut self, weight: NormalWeight) {
         let pool = self.to_indexed();
         let computed = pool.vertex_normals(weight);

@@ -25,6 +25,17 @@ impl Mesh {
 
     /// The boundary loops (naked edges), each as its half-edges in [`next`](Self::next) order, in the order of their
     /// first edges. A closed mesh has none. O(edges).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// let loops = mesh.boundary_loops();
+    /// assert_eq!((loops.len(), loops[0].len()), (1, 3));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn boundary_loops(&self) -> Vec<Vec<HalfedgeKey>> {
         let mut seen = vec![false; self.edges.slot_count()];
         let mut loops = Vec::new();
@@ -43,6 +54,16 @@ impl Mesh {
 
     /// The components: faces joined across edges, each list in the order of a breadth-first walk from its first face,
     /// the lists in the order of their first faces. O(half-edges).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// assert_eq!(mesh.components(), [vec![mesh.faces().next().unwrap()]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn components(&self) -> Vec<Vec<FaceKey>> {
         let mut seen = vec![false; self.faces.slot_count()];
         let mut components = Vec::new();
@@ -104,6 +125,18 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MissingFace`] on a dead key.
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// let f = mesh.faces().next().unwrap();
+    /// mesh.reverse_component(f)?;
+    /// assert_eq!(&mesh.to_indexed().polygons()[0], &[0, 2, 1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn reverse_component(&mut self, f: FaceKey) -> Result<(), MissingFace> {
         let first = self.face_slot(f).ok_or(MissingFace(f))?;
         let faces = self.component_slots(first, &mut vec![false; self.faces.slot_count()]);

@@ -209,6 +209,16 @@ impl<'m> Topology<'m> {
     }
 
     /// The naked edges as oriented loops, and as chains where they end at edges with three or more faces. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// assert_eq!(pool.topology().naked_edges().loops, [vec![1, 0, 2]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn naked_edges(&self) -> NakedEdges {
         loops::naked_edges(self)
     }

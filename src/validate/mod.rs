@@ -87,6 +87,17 @@ impl Mesh {
     ///
     /// # Errors
     /// The first violation that [`violations`](Self::violations) lists.
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
+    /// # let mut mesh = Mesh::build(&pool)?;
+    /// assert_eq!(mesh.validate(), Ok(()));
+    /// assert!(mesh.violations().is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn validate(&self) -> Result<(), Violation> {
         if self.is_sound() {
             return Ok(());
