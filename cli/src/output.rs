@@ -31,11 +31,22 @@ pub(crate) fn write_mesh(
 
 /// Writes a JSON file.
 pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
-    let written = whole_or_not_at_all(path, |sink| -> Result<(), std::io::Error> {
+    write_with(path, |sink| {
         serde_json::to_writer(&mut *sink, value)?;
         sink.write_all(b"\n")
-    });
-    written.map_err(|error| Failure::Output(format!("{}: {error}", path.display())))
+    })
+}
+
+/// Writes a text file.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    write_with(path, |sink| sink.write_all(text.as_bytes()))
+}
+
+fn write_with(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+) -> Result<(), Failure> {
+    whole_or_not_at_all(path, write).map_err(|error| Failure::Output(format!("{}: {error}", path.display())))
 }
 
 /// Writes to a file beside the destination, and moves it there once it is complete and on disk.

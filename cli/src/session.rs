@@ -12,6 +12,8 @@ use std::time::Instant;
 pub(crate) struct Answer {
     /// The fields of the JSON object.
     pub(crate) json: Map<String, Value>,
+    /// A long list among them, already in JSON: half a million values would take a kilobyte each.
+    pub(crate) list: Option<(&'static str, String)>,
     /// The same for people, on standard output.
     pub(crate) text: String,
     /// Whether the answer is "no" (exit code 1).
@@ -89,16 +91,25 @@ impl Session {
         [("timings_ms", timings), ("peak_rss_bytes", json!(peak_rss()))]
     }
 
-    /// The JSON object of an answer, as `--report` writes it too.
-    pub(crate) fn object(&self, mut json: Map<String, Value>) -> Value {
+    /// The JSON object of an answer in one line, as `--report` writes it too.
+    pub(crate) fn object(
+        &self,
+        mut json: Map<String, Value>,
+        list: Option<&(&'static str, String)>,
+    ) -> String {
         json.extend(self.common().map(|(k, v)| (k.to_owned(), v)));
-        Value::Object(json)
+        let fields = Value::Object(json).to_string();
+        match list {
+            // There are fields, so a comma follows.
+            Some((name, items)) => format!("{{\"{name}\":{items},{}\n", &fields[1..]),
+            None => fields + "\n",
+        }
     }
 
     /// Prints the result and gives the exit code.
     pub(crate) fn finish(&self, result: Result<Answer, Failure>) -> ExitCode {
-        let (code, json, text) = match result {
-            Ok(answer) => (u8::from(answer.is_no), answer.json, answer.text),
+        let (code, json, list, text) = match result {
+            Ok(answer) => (u8::from(answer.is_no), answer.json, answer.list, answer.text),
             Err(failure) => {
                 let (code, kind, message, mut json, place) = match failure {
                     Failure::Refused { message, json } => (1, "refused", message, json, None),
@@ -114,10 +125,10 @@ impl Session {
                     None => {}
                 }
                 json.insert("error".to_owned(), error);
-                (code, json, String::new())
+                (code, json, None, String::new())
             }
         };
-        let printed = if self.is_json { format!("{}\n", self.object(json)) } else { text };
+        let printed = if self.is_json { self.object(json, list.as_ref()) } else { text };
         let mut out = std::io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             // Nobody reads on: `meshwright ... | head`.

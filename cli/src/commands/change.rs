@@ -32,7 +32,7 @@ fn import_change_write(
     let destination = args.output.output.display();
     let text =
         format!("wrote {destination}: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
-    Ok(Answer { json: fields(json), text, is_no: false })
+    Ok(Answer { json: fields(json), text, ..Answer::default() })
 }
 
 pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failure> {
@@ -58,5 +58,5 @@ pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failu
     json.insert("lost".to_owned(), json!(lost));
     json.insert("import".to_owned(), import::import_json(&loaded, &outcome.report));
     let text = format!("wrote {}: {} faces flipped\n", args.output.output.display(), flipped.len());
-    Ok(Answer { json, text, is_no: false })
+    Ok(Answer { json, text, ..Answer::default() })
 }

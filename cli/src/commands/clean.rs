@@ -29,7 +29,6 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     let report = &outcome.report;
     let json = fields(json!({
         "schema": 1,
-        "defects": report.records,
         "counts": report.counts(),
         "steps": report.steps,
         "not_carried": report.not_carried,
@@ -38,9 +37,11 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         "notes": loaded.notes,
         "lost": lost,
     }));
+    let defects = serde_json::to_string(&report.records).map_err(Failure::refused)?;
+    let list = Some(("defects", defects));
     if let Some(path) = &args.report {
-        let object = session.object(json.clone());
-        session.timed(Phase::Write, || output::write_json(path, &object))?;
+        let object = session.object(json.clone(), list.as_ref());
+        session.timed(Phase::Write, || output::write_text(path, &object))?;
     }
     let mut text = String::new();
     let changes = import::changes(report);
@@ -57,7 +58,7 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         summary(&before),
         summary(&after)
     ));
-    Ok(Answer { json, text, is_no: false })
+    Ok(Answer { json, list, text, is_no: false })
 }
 
 fn summary(f: &Facts) -> String {

@@ -22,7 +22,7 @@ pub(super) fn inspect(session: &mut Session, args: &Inspect) -> Result<Answer, F
     let facts = session.timed(Phase::Run, || cleanup::inspect(&loaded.soup, args.weld.weld))?;
     let mut json = fields(json!(facts));
     json.insert("notes".to_owned(), json!(loaded.notes));
-    Ok(Answer { json, text: describe(&facts), is_no: false })
+    Ok(Answer { json, text: describe(&facts), ..Answer::default() })
 }
 
 fn describe(f: &Facts) -> String {
@@ -103,7 +103,7 @@ pub(super) fn is_closed(session: &mut Session, args: &Inspect) -> Result<Answer,
     };
     let witnesses = json!({ "empty": is_empty, "boundary_edges": naked, "nonmanifold_edges": more });
     let json = Map::from_iter([("closed".to_owned(), json!(closed)), ("witnesses".to_owned(), witnesses)]);
-    Ok(Answer { json, text, is_no: !closed })
+    Ok(Answer { json, text, is_no: !closed, ..Answer::default() })
 }
 
 pub(super) fn naked_edges(session: &mut Session, args: &Inspect) -> Result<Answer, Failure> {
@@ -119,7 +119,7 @@ pub(super) fn naked_edges(session: &mut Session, args: &Inspect) -> Result<Answe
         let more = if vertices.len() > 10 { " ..." } else { "" };
         let _ = writeln!(text, "{kind} of {} vertices: {}{more}", vertices.len(), shown.join(" "));
     }
-    Ok(Answer { json: fields(json!(naked)), text, is_no: false })
+    Ok(Answer { json: fields(json!(naked)), text, ..Answer::default() })
 }
 
 pub(super) fn volume(session: &mut Session, args: &Volume) -> Result<Answer, Failure> {
@@ -138,7 +138,7 @@ pub(super) fn volume(session: &mut Session, args: &Volume) -> Result<Answer, Fai
     let json = json!({ "volume": volume, "area": area, "centroid": centroid, "import": import });
     let center = centroid.map_or("none: the volume is zero".to_owned(), |c| c.to_string());
     let text = format!("volume    {volume}\narea      {area}\ncentroid  {center}\n");
-    Ok(Answer { json: fields(json), text, is_no: false })
+    Ok(Answer { json: fields(json), text, ..Answer::default() })
 }
 
 /// Where a half-edge lies.
