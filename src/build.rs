@@ -108,7 +108,8 @@ impl Mesh {
             polygons.push(corners.map(|h| number[self.origin[h as usize] as usize]));
         }
         let pick = |column: &Vec<DVec3>| order.iter().map(|&v| column[v as usize]).collect();
-        IndexedMesh::trusted(pick(&self.positions), polygons, self.normals.as_ref().map(pick))
+        let normals = self.normal_column().map(|n| order.iter().filter_map(|&v| n.get(v).copied()).collect());
+        IndexedMesh::trusted(pick(&self.positions), polygons, normals)
     }
 }
 
@@ -145,7 +146,7 @@ pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
         vertex_halfedge: vec![NONE; pool.vertex_count() + 1],
         face_halfedge: Vec::with_capacity(pool.face_count() + 1),
         positions: shifted(pool.positions()),
-        normals: pool.normals().map(shifted),
+        ..Mesh::default()
     };
     // Slot 0 of every column is slotmap's sentinel, so input index i lives in slot i + 1.
     mesh.face_halfedge.push(NONE);
@@ -165,7 +166,13 @@ pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
             before = h;
         }
     }
-    (link_boundary(&mut mesh, &pairing.open) && each_vertex_has_one_fan(&mesh)).then_some(mesh)
+    if !link_boundary(&mut mesh, &pairing.open) || !each_vertex_has_one_fan(&mesh) {
+        return None;
+    }
+    if let Some(normals) = pool.normals() {
+        mesh.replace_normals(shifted(normals));
+    }
+    Some(mesh)
 }
 
 fn shifted(values: &[DVec3]) -> Vec<DVec3> {

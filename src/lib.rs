@@ -24,9 +24,11 @@ mod arena;
 mod build;
 pub mod cleanup;
 mod closed;
+mod column;
 mod control;
 #[doc = include_str!("design.md")]
 pub mod design {}
+mod edit;
 mod geometry;
 mod indexed;
 #[cfg(feature = "io")]
@@ -43,7 +45,17 @@ mod walk;
 
 pub use build::{BuildDefect, BuildError};
 pub use closed::{Closed, NotClosed};
+pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
 pub use control::{Cancelled, Control, Progress};
+pub use edit::changes::{Change, Lineage, Numbering};
+pub use edit::undo::{Checkpoint, UnknownCheckpoint};
+pub use edit::{
+    AddFaceError, AddVertexError, AddedFace, CollapseError, Collapsed, DissolveVertexError, DissolvedVertex,
+    Few, FillHoleError, FlipEdgeError, JoinFacesError, JoinedFaces, MissingFace, PokeFaceError, PokedFace,
+    RemoveEdgeError, RemoveFaceError, RemoveVertexError, Removed, SplitEdge, SplitEdgeError, SplitEdgeFaces,
+    SplitFace, SplitFaceError, SplitVertex, SplitVertexError, StitchError, Stitched, TriangulateFaceError,
+    TriangulatedFace,
+};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use glam;
@@ -54,7 +66,7 @@ pub use report::{
     Attribute, Element, Kind, MapMismatch, Maps, Outcome, Record, Relation, Report, Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
-pub use topology::{EdgeRef, MissingFace, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
 pub use validate::Violation;
 
 /// The README's program runs.

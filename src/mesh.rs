@@ -1,6 +1,10 @@
 //! The third rung: the half-edge mesh, its storage and its accessors.
 
 use crate::arena::Arena;
+use crate::column::{Column, Columns, Event, Kind, Rule, Store};
+use crate::edit::changes::Changes;
+use crate::edit::undo::Undo;
+use crate::geometry::direction;
 use crate::matching::NONE;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 use glam::DVec3;
@@ -49,8 +53,14 @@ pub struct Mesh {
     pub(crate) face_halfedge: Vec<u32>,
     /// By vertex slot; finite.
     pub(crate) positions: Vec<DVec3>,
-    /// By vertex slot, if the mesh carries normals; finite.
-    pub(crate) normals: Option<Vec<DVec3>>,
+    /// User data.
+    pub(crate) columns: Columns,
+    /// The column of the normals the mesh carries, if it does; finite.
+    pub(crate) normals: Option<Column<VertexKey, DVec3>>,
+    /// What was overwritten since the oldest checkpoint, if there is one.
+    pub(crate) undo: Option<Box<Undo>>,
+    /// What edits did, if somebody listens.
+    pub(crate) changes: Option<Box<Changes>>,
 }
 
 /// Why a position or a normal was not set.
@@ -144,7 +154,7 @@ impl Mesh {
         /// The normal a vertex carries, if the mesh carries normals: one that was given, or
         /// [computed](Self::compute_normals). Moving vertices does not change it.
         normal, get_normal(self, v: VertexKey => vertex_slot) -> Option<DVec3> {
-            self.normals.as_ref().map(|n| n[v as usize])
+            self.normal_column().and_then(|n| n.get(v).copied())
         }
     }
 
@@ -170,7 +180,7 @@ impl Mesh {
         if !position.is_finite() {
             return Err(SetError::NonFinite(v));
         }
-        self.positions[slot as usize] = position;
+        self.write_position(slot, position);
         Ok(())
     }
 
@@ -183,9 +193,28 @@ impl Mesh {
         if !normal.is_finite() {
             return Err(SetError::NonFinite(v));
         }
-        let slots = self.vertices.slot_count();
-        self.normals.get_or_insert_with(|| vec![DVec3::ZERO; slots])[slot as usize] = normal;
-        Ok(())
+        let column = self.normals.unwrap_or_else(|| self.add_vertex_column(DVec3::ZERO, normal_rule()));
+        self.normals = Some(column);
+        self.set_value(column, v, normal).map(|_| ()).map_err(|_| SetError::Missing(self.vertices.key(slot)))
+    }
+
+    pub(crate) fn normal_column(&self) -> Option<&Store<DVec3>> {
+        self.columns.store(Kind::Vertex, self.normals?.index)
+    }
+
+    /// Lets the mesh carry these normals, given by slot.
+    pub(crate) fn replace_normals(&mut self, normals: Vec<DVec3>) {
+        match self.normals {
+            Some(column) => {
+                for v in self.vertices.live().collect::<Vec<_>>() {
+                    self.write_value(Kind::Vertex, column.index, v, normals[v as usize]);
+                }
+            }
+            None => {
+                let store = Store::of(normals, DVec3::ZERO, normal_rule());
+                self.normals = Some(Column::new(self.columns.add(Kind::Vertex, store)));
+            }
+        }
     }
 
     read! {
@@ -292,16 +321,18 @@ impl Mesh {
         is_isolated, get_is_isolated(self, v: VertexKey => vertex_slot) -> bool { self.vertex_halfedge[v as usize] == NONE }
     }
 
-    /// Bytes of heap memory the mesh holds. O(1).
+    /// Bytes of heap memory the mesh holds: what values of user data own on the heap themselves, and changes that wait to be
+    /// fetched, aside. O(columns).
     pub fn heap_bytes(&self) -> usize {
         let links =
             [&self.next, &self.prev, &self.origin, &self.face, &self.vertex_halfedge, &self.face_halfedge];
-        let vectors = self.positions.capacity() + self.normals.as_ref().map_or(0, Vec::capacity);
         self.vertices.bytes()
             + self.edges.bytes()
             + self.faces.bytes()
             + links.iter().map(|c| c.capacity() * 4).sum::<usize>()
-            + vectors * size_of::<DVec3>()
+            + self.positions.capacity() * size_of::<DVec3>()
+            + self.columns.bytes()
+            + self.checkpoint_bytes()
     }
 
     #[inline]
@@ -361,7 +392,21 @@ impl Default for Mesh {
             vertex_halfedge: vec![NONE],
             face_halfedge: vec![NONE],
             positions: vec![DVec3::ZERO],
+            columns: Columns::default(),
             normals: None,
+            undo: None,
+            changes: None,
         }
     }
+}
+
+/// Normals are mixed like any vectors and brought back to unit length; moving a vertex leaves its normal as it is.
+fn normal_rule() -> Rule<DVec3> {
+    Rule::custom(|event, sources: &[(&DVec3, f64)]| match (event, sources) {
+        (Event::Move, [(normal, _), ..]) => **normal,
+        _ => {
+            let sum: DVec3 = sources.iter().map(|&(&normal, weight)| direction(normal) * weight).sum();
+            direction(sum)
+        }
+    })
 }

@@ -118,7 +118,7 @@ impl Mesh {
         for (slot, normal) in self.vertices.in_user_order().into_iter().zip(computed) {
             column[slot as usize] = normal;
         }
-        self.normals = Some(column);
+        self.replace_normals(column);
     }
 
     /// Where a half-edge starts.

@@ -1,12 +1,7 @@
-//! Native walks over the half-edge mesh: boundary loops, components, reversal.
+//! Native walks over the half-edge mesh: boundary loops, components.
 
 use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh};
-
-/// An operation on a part of the mesh was given a face that is not there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not a face of the mesh")]
-pub struct MissingFace(pub FaceKey);
 
 impl Mesh {
     /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(edges).
@@ -77,7 +72,7 @@ impl Mesh {
         components
     }
 
-    fn component_slots(&self, first: u32, seen: &mut [bool]) -> Vec<u32> {
+    pub(crate) fn component_slots(&self, first: u32, seen: &mut [bool]) -> Vec<u32> {
         seen[first as usize] = true;
         let mut faces = vec![first];
         let mut done = 0;
@@ -97,88 +92,5 @@ impl Mesh {
     pub fn euler_characteristic(&self) -> i64 {
         let used = self.vertices.live().filter(|&v| self.vertex_halfedge[v as usize] != NONE).count();
         used as i64 - self.edge_count() as i64 + self.face_count() as i64
-    }
-
-    /// Flips the mesh: reverses the winding of every face and negates carried normals. Twice is the identity; all keys
-    /// stay valid, each half-edge stays with its face and now runs the other way. O(elements).
-    ///
-    /// # Examples
-    /// ```
-    /// # use meshwright::{IndexedMesh, Mesh, glam::DVec3};
-    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-    /// # let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
-    /// let h = mesh.halfedges().next().unwrap();
-    /// let (a, b) = (mesh.origin(h), mesh.target(h));
-    /// mesh.reverse();
-    /// assert_eq!((mesh.origin(h), mesh.target(h)), (b, a));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn reverse(&mut self) {
-        let edges: Vec<u32> = self.edges.live().collect();
-        let vertices: Vec<u32> = self.vertices.live().collect();
-        let faces: Vec<u32> = self.faces.live().collect();
-        self.reverse_elements(&edges, &vertices, &faces);
-    }
-
-    /// Flips one component: reverses the winding of every face that can be reached from `f` across edges. O(its size),
-    /// and one byte per slot of the mesh.
-    ///
-    /// # Errors
-    /// [`MissingFace`] on a dead key.
-    ///
-    /// # Examples
-    /// ```
-    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
-    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
-    /// # let mut mesh = Mesh::build(&pool)?;
-    /// let f = mesh.faces().next().unwrap();
-    /// mesh.reverse_component(f)?;
-    /// assert_eq!(&mesh.to_indexed().polygons()[0], &[0, 2, 1]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn reverse_component(&mut self, f: FaceKey) -> Result<(), MissingFace> {
-        let first = self.face_slot(f).ok_or(MissingFace(f))?;
-        let faces = self.component_slots(first, &mut vec![false; self.faces.slot_count()]);
-        let mut edges = Vec::new();
-        let mut vertices = Vec::new();
-        for &f in &faces {
-            for h in self.loop_slots(self.face_halfedge[f as usize]) {
-                edges.push(h >> 1);
-                vertices.push(self.origin[h as usize]);
-            }
-        }
-        for list in [&mut edges, &mut vertices] {
-            list.sort_unstable();
-            list.dedup();
-        }
-        self.reverse_elements(&edges, &vertices, &faces);
-        Ok(())
-    }
-
-    /// Reverses whole components, given all their elements.
-    fn reverse_elements(&mut self, edges: &[u32], vertices: &[u32], faces: &[u32]) {
-        // The half-edge that ends at a corner starts there afterwards, and stays with its face: so the one before the
-        // vertex's (on the boundary, the other boundary half-edge) and the one before the face's first take over.
-        for &v in vertices {
-            let h = &mut self.vertex_halfedge[v as usize];
-            if *h != NONE {
-                *h = self.prev[*h as usize];
-            }
-            if let Some(normals) = &mut self.normals {
-                normals[v as usize] = -normals[v as usize];
-            }
-        }
-        for &f in faces {
-            let h = &mut self.face_halfedge[f as usize];
-            *h = self.prev[*h as usize];
-        }
-        for &e in edges {
-            let h = 2 * e as usize;
-            self.origin.swap(h, h + 1);
-            for h in [h, h + 1] {
-                std::mem::swap(&mut self.next[h], &mut self.prev[h]);
-            }
-        }
     }
 }
