@@ -135,6 +135,8 @@ named! {
         TextureCoordinates = "texture_coordinates",
         /// Groups and materials.
         Groups = "groups",
+        /// The names of material files.
+        MaterialFiles = "material_files",
     }
 }
 

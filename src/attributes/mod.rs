@@ -42,6 +42,8 @@ pub struct Attributes {
     pub corner_uvs: Option<Vec<Option<DVec2>>>,
     /// The group of each face.
     pub face_groups: Option<FaceGroups>,
+    /// The names of files that describe the groups' materials.
+    pub material_files: Vec<String>,
 }
 
 /// Which group each face is in.
@@ -94,6 +96,7 @@ impl Attributes {
         corner_normals: None,
         corner_uvs: None,
         face_groups: None,
+        material_files: Vec::new(),
     };
 
     /// Whether there are none.
@@ -113,13 +116,14 @@ impl Attributes {
         self.present().into_iter().filter(|(_, is)| *is).map(|(kind, _)| kind)
     }
 
-    fn present(&self) -> [(Attribute, bool); 5] {
+    fn present(&self) -> [(Attribute, bool); 6] {
         [
             (Attribute::VertexNormals, self.vertex_normals.is_some()),
             (Attribute::VertexColors, self.vertex_colors.is_some()),
             (Attribute::CornerNormals, self.corner_normals.is_some()),
             (Attribute::TextureCoordinates, self.corner_uvs.is_some()),
             (Attribute::Groups, self.face_groups.is_some()),
+            (Attribute::MaterialFiles, !self.material_files.is_empty()),
         ]
     }
 

@@ -24,6 +24,7 @@ pub(crate) fn from_soup(soup: &mut PolygonSoup) -> (Attributes, Vec<IndexedDefec
             uvs.into_iter().map(|uv| uv.map(Into::into)).collect()
         }),
         face_groups: FaceGroups::from_runs(&soup.groups, polygons.len()),
+        material_files: std::mem::take(&mut soup.material_files),
     };
     for (group, run) in soup.groups.iter().enumerate() {
         if run.faces.start < run.faces.end && run.faces.end > polygons.len() {
@@ -68,6 +69,7 @@ impl Attributes {
         soup.groups = self.face_groups.map(|groups| groups.runs()).unwrap_or_default();
         soup.vertex_normals = self.vertex_normals.unwrap_or_default();
         soup.vertex_colors = self.vertex_colors.unwrap_or_default();
+        soup.material_files = self.material_files;
     }
 }
 

@@ -60,6 +60,10 @@ pub(super) fn carry<'r>(pool: &Pool<'_>, new_of: impl Fn(usize) -> &'r [u32]) ->
     carried.attributes.corner_uvs =
         uvs.map(|uvs| uvs.into_iter().map(|uv| uv.map(DVec2::from)).collect());
     carried.groups(pool);
+    if !soup.material_files.is_empty() {
+        carried.attributes.material_files.clone_from(&soup.material_files);
+        carried.became.push((Attribute::MaterialFiles, Some(Attribute::MaterialFiles)));
+    }
     carried.attributes.turn_with(&pool.flipped, &pool.positions, &pool.polygons);
     carried.lost.sort_unstable();
     carried.lost.dedup();
@@ -72,6 +76,7 @@ fn has_attributes(soup: &PolygonSoup) -> bool {
         || soup.corner_normals.is_some()
         || soup.corner_uvs.is_some()
         || !soup.groups.is_empty()
+        || !soup.material_files.is_empty()
 }
 
 /// The mean of two normals, as long as they are on the average.

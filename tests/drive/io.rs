@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each target takes one")]
 
+use meshwright::glam::DVec3;
 use meshwright::io::{self, Encoding, Format, Limits, Lost};
 use meshwright::{CornerData, PolygonSoup};
 
@@ -71,14 +72,14 @@ pub(crate) fn round_trip(soup: &PolygonSoup, format: Format, encoding: Encoding)
     let same = |a: &dyn std::fmt::Debug, b: &dyn std::fmt::Debug| {
         assert_eq!(format!("{a:?}"), format!("{b:?}"), "{format:?} {encoding:?}");
     };
-    if let (false, Some(uvs)) = (lost.contains(&Lost::TextureCoordinates), &soup.corner_uvs) {
-        same(&values_at_corners(uvs), &back.corner_uvs.as_ref().map(values_at_corners).unwrap_or_default());
+    if !lost.contains(&Lost::TextureCoordinates) {
+        same(&values_at_corners(&soup.corner_uvs), &values_at_corners(&back.corner_uvs));
     }
-    if let (false, Some(normals)) = (lost.contains(&Lost::Normals), &soup.corner_normals) {
-        same(
-            &values_at_corners(normals),
-            &back.corner_normals.as_ref().map(values_at_corners).unwrap_or_default(),
-        );
+    if !lost.contains(&Lost::Normals) {
+        same(&normals_at_corners(soup), &normals_at_corners(&back));
+    }
+    if !lost.contains(&Lost::MaterialFiles) {
+        assert_eq!(back.material_files, soup.material_files, "{format:?} {encoding:?} keeps material files");
     }
     if !lost.contains(&Lost::Colors) && !soup.vertex_colors.is_empty() {
         let opaque = lost.contains(&Lost::Transparency);
@@ -89,6 +90,18 @@ pub(crate) fn round_trip(soup: &PolygonSoup, format: Format, encoding: Encoding)
     }
 }
 
-fn values_at_corners<T: Copy>(data: &CornerData<T>) -> Vec<Option<T>> {
-    data.indices.iter().map(|&i| data.values.get(i as usize).copied()).collect()
+/// Empty if no corner has a value.
+fn values_at_corners<T: Copy>(data: &Option<CornerData<T>>) -> Vec<Option<T>> {
+    let values = data.iter().flat_map(|d| d.indices.iter().map(|&i| d.values.get(i as usize).copied()));
+    let values: Vec<Option<T>> = values.collect();
+    if values.iter().all(Option::is_none) { Vec::new() } else { values }
+}
+
+/// A format may say normals of vertices as those of corners, and the other way round.
+fn normals_at_corners(soup: &PolygonSoup) -> Vec<Option<DVec3>> {
+    let of_corners = values_at_corners(&soup.corner_normals);
+    if of_corners.is_empty() && !soup.vertex_normals.is_empty() {
+        return soup.polygons.corners().iter().map(|&v| Some(soup.vertex_normals[v as usize])).collect();
+    }
+    of_corners
 }
