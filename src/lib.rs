@@ -53,7 +53,8 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use report::{
-    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report, Step, StepSummary,
+    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
+    Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
 pub use topology::{EdgeRef, MissingFace, NakedEdges, NotOrientable, Topology, unify_winding};

@@ -18,11 +18,10 @@ pub(crate) fn from_soup(soup: &mut PolygonSoup) -> (Attributes, Vec<IndexedDefec
         vertex_normals: Some(std::mem::take(&mut soup.vertex_normals)).filter(|n| !n.is_empty()),
         vertex_colors: Some(std::mem::take(&mut soup.vertex_colors)).filter(|c| !c.is_empty()),
         corner_normals: corner_normals
-            .map(|data| expand(&data, Attribute::CornerNormals, polygons, &mut defects)),
-        corner_uvs: corner_uvs.map(|data| {
-            let uvs = expand(&data, Attribute::TextureCoordinates, polygons, &mut defects);
-            uvs.into_iter().map(|uv| uv.map(Into::into)).collect()
-        }),
+            .and_then(|data| expand(&data, Attribute::CornerNormals, polygons, &mut defects)),
+        corner_uvs: corner_uvs
+            .and_then(|data| expand(&data, Attribute::TextureCoordinates, polygons, &mut defects))
+            .map(|uvs| uvs.into_iter().map(|uv| uv.map(Into::into)).collect()),
         face_groups: FaceGroups::from_runs(&soup.groups, polygons.len()),
         material_files: std::mem::take(&mut soup.material_files),
     };
@@ -36,22 +35,23 @@ pub(crate) fn from_soup(soup: &mut PolygonSoup) -> (Attributes, Vec<IndexedDefec
     (attributes, defects)
 }
 
-/// The value of each corner.
+/// The value of each corner; `None` if none has one.
 fn expand<T: Copy>(
     data: &CornerData<T>,
     attribute: Attribute,
     polygons: &Polygons,
     defects: &mut Vec<IndexedDefect>,
-) -> Vec<Option<T>> {
-    let values = data.indices.iter().enumerate().map(|(i, &index)| {
+) -> Option<Vec<Option<T>>> {
+    let mut values = Vec::with_capacity(data.indices.len());
+    for (i, &index) in data.indices.iter().enumerate() {
         let value = data.values.get(index as usize).copied();
         if value.is_none() && index != CornerData::<T>::NONE && i < polygons.corners().len() {
             let [face, corner] = face_and_corner(polygons, i);
             defects.push(IndexedDefect::NoSuchValue { attribute, face, corner, index });
         }
-        value
-    });
-    values.collect()
+        values.push(value);
+    }
+    values.iter().any(Option::is_some).then_some(values)
 }
 
 impl Attributes {
@@ -95,7 +95,8 @@ fn pooled<T: Copy, B: PartialEq>(
                 data.indices.push(CornerData::<T>::NONE);
                 continue;
             };
-            let is_same = |i: u32| data.values.get(i as usize).is_some_and(|other| bits(other) == bits(value));
+            let is_same =
+                |i: u32| data.values.get(i as usize).is_some_and(|other| bits(other) == bits(value));
             let mut at = last[v as usize];
             let mut steps = 0;
             while at != NONE && steps < LOOK_BACK && !is_same(seen[at as usize].0) {
@@ -155,6 +156,22 @@ impl FaceGroups {
             self.names.len() as u32 - 1
         });
         self.of.resize(end, number);
+    }
+
+    /// The groups of the faces chosen, numbered by first use; `None` if no face is in one.
+    pub(crate) fn of_faces(mut self, chosen: &[u32]) -> Option<Self> {
+        let mut number = vec![NONE; self.names.len()];
+        let mut names = Vec::new();
+        let of = chosen.iter().map(|&face| {
+            let old = self.of[face as usize] as usize;
+            if number[old] == NONE {
+                number[old] = names.len() as u32;
+                names.push(std::mem::take(&mut self.names[old]));
+            }
+            number[old]
+        });
+        let of = of.collect();
+        names.iter().any(|name| !name.says_nothing()).then_some(Self { names, of })
     }
 
     /// The runs of faces of one group, in the order of faces.

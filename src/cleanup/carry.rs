@@ -49,7 +49,8 @@ pub(super) fn carry<'r>(pool: &Pool<'_>, new_of: impl Fn(usize) -> &'r [u32]) ->
     carried.vertex_normals(pool, &new_of);
     carried.vertex_colors(pool, &new_of);
     let from_vertices = carried.attributes.corner_normals.take();
-    let own = carried.corners(pool, &soup.corner_normals, Attribute::CornerNormals, DVec3::is_finite, between);
+    let own =
+        carried.corners(pool, &soup.corner_normals, Attribute::CornerNormals, DVec3::is_finite, between);
     carried.attributes.corner_normals = match (own, from_vertices) {
         (Some(own), Some(other)) => Some(own.into_iter().zip(other).map(|(a, b)| a.or(b)).collect()),
         (own, other) => own.or(other),
@@ -57,8 +58,7 @@ pub(super) fn carry<'r>(pool: &Pool<'_>, new_of: impl Fn(usize) -> &'r [u32]) ->
     let is_finite = |uv: [f64; 2]| uv.iter().all(|x| x.is_finite());
     let mean = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * 0.5 + c * 0.5, b * 0.5 + d * 0.5];
     let uvs = carried.corners(pool, &soup.corner_uvs, Attribute::TextureCoordinates, is_finite, mean);
-    carried.attributes.corner_uvs =
-        uvs.map(|uvs| uvs.into_iter().map(|uv| uv.map(DVec2::from)).collect());
+    carried.attributes.corner_uvs = uvs.map(|uvs| uvs.into_iter().map(|uv| uv.map(DVec2::from)).collect());
     carried.groups(pool);
     if !soup.material_files.is_empty() {
         carried.attributes.material_files.clone_from(&soup.material_files);
@@ -102,12 +102,13 @@ impl Carried {
         let kept = at_vertices(pool, finite, between);
         let agrees = |v: usize| new_of(v).iter().all(|&n| kept[n as usize] == finite(v));
         if (0..given.len()).all(agrees) {
-            self.attributes.vertex_normals = Some(kept);
+            self.attributes.vertex_normals = Some(kept).filter(|k| !k.is_empty());
             return self.became.push((kind, Some(kind)));
         }
         let vertex_of_corner = pool.soup.polygons.corners();
         let own = |c: usize| Some(given[vertex_of_corner[c] as usize]).filter(|n| n.is_finite());
-        self.attributes.corner_normals = Some(at_corners(pool, own, between));
+        let values = at_corners(pool, own, between);
+        self.attributes.corner_normals = Some(values).filter(|v| v.iter().any(Option::is_some));
         self.became.push((kind, Some(Attribute::CornerNormals)));
         let mut named = vec![false; given.len()];
         pool.corner_source.iter().for_each(|&c| named[vertex_of_corner[c as usize] as usize] = true);
@@ -135,7 +136,7 @@ impl Carried {
                 self.lose(kind, LossReason::Merged, Element::Vertex(v as u32));
             }
         }
-        self.attributes.vertex_colors = Some(kept);
+        self.attributes.vertex_colors = Some(kept).filter(|k| !k.is_empty());
         self.became.push((kind, Some(kind)));
     }
 
@@ -179,12 +180,14 @@ impl Carried {
     fn groups(&mut self, pool: &Pool<'_>) {
         let (soup, kind) = (pool.soup, Attribute::Groups);
         let faces = soup.polygons.len();
-        let Some(mut groups) = FaceGroups::from_runs(&soup.groups, faces) else { return };
-        for face in faces_in_two(&soup.groups, faces) {
+        let Some(groups) = FaceGroups::from_runs(&soup.groups, faces) else { return };
+        // A group whose faces are all gone is not missed.
+        let Some(kept) = groups.of_faces(&pool.face_source) else { return };
+        let stays = |f: u32| pool.face_source.binary_search(&f).is_ok();
+        for face in faces_in_two(&soup.groups, faces).filter(|&f| stays(f)) {
             self.lose(kind, LossReason::TwoGroups, Element::Face(face));
         }
-        groups.of = pool.face_source.iter().map(|&f| groups.of[f as usize]).collect();
-        self.attributes.face_groups = Some(groups);
+        self.attributes.face_groups = Some(kept);
         self.became.push((kind, Some(kind)));
     }
 }

@@ -20,8 +20,8 @@ use crate::matching::{Chains, Matching, NONE};
 use crate::report::{Attribute, Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
 use crate::topology::{FaceOf, duplicate_faces, flip_faces, next_corner, orient};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
-use glam::DVec3;
 use carry::Carried;
+use glam::DVec3;
 use pool::Pool;
 
 /// What clean-up is for.

@@ -219,7 +219,8 @@ struct VertexData<'s> {
 impl<'s> VertexData<'s> {
     fn of(soup: &'s PolygonSoup) -> Self {
         let given = per_vertex(&soup.vertex_normals, soup).map(Cow::Borrowed);
-        let of_corners = || at_vertices(soup, soup.corner_normals.as_ref()?, |n| n.to_array().map(f64::to_bits));
+        let of_corners =
+            || at_vertices(soup, soup.corner_normals.as_ref()?, |n| n.to_array().map(f64::to_bits));
         let uvs = soup.corner_uvs.as_ref();
         Self {
             normals: given.or_else(of_corners),

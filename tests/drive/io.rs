@@ -2,9 +2,10 @@
 
 #![allow(dead_code, reason = "each target takes one")]
 
+use meshwright::cleanup::{Weld, index};
 use meshwright::glam::DVec3;
 use meshwright::io::{self, Encoding, Format, Limits, Lost};
-use meshwright::{CornerData, PolygonSoup};
+use meshwright::{CornerData, IndexedMesh, PolygonSoup};
 
 /// Small enough that a fuzzer finds whatever breaks them.
 const LIMITS: Limits = Limits { bytes: 1 << 20, vertices: 4096, faces: 4096, corners: 16384 };
@@ -36,11 +37,27 @@ fn drive(bytes: &[u8], format: Format) {
     assert!(soup.corner_uvs.as_ref().is_none_or(|d| d.indices.len() == corners));
     assert!(soup.corner_normals.as_ref().is_none_or(|d| d.indices.len() == corners));
     assert!(soup.groups.iter().all(|g| g.faces.end <= soup.polygons.len()));
+    through_the_pool(&soup);
     for format in [Format::Obj, Format::Ply, Format::Off, Format::Stl] {
         for encoding in [Encoding::Binary, Encoding::BigEndian, Encoding::Ascii] {
             round_trip(&soup, format, encoding);
         }
     }
+}
+
+/// A valid vertex pool carries all that was read, and gives it back.
+fn through_the_pool(soup: &PolygonSoup) {
+    let indexed = index(soup, Weld::None).expect("a soup is never refused");
+    let Ok(pool) = IndexedMesh::try_from(soup.clone()) else { return };
+    assert!(pool == indexed.value, "what needs no repair is carried as it is");
+    let back = PolygonSoup::from(pool.clone());
+    assert_eq!(values_at_corners(&back.corner_uvs), values_at_corners(&soup.corner_uvs));
+    assert_eq!(values_at_corners(&back.corner_normals), values_at_corners(&soup.corner_normals));
+    assert_eq!(
+        (&back.vertex_normals, &back.vertex_colors, &back.material_files),
+        (&soup.vertex_normals, &soup.vertex_colors, &soup.material_files)
+    );
+    assert_eq!(IndexedMesh::try_from(back), Ok(pool));
 }
 
 /// What is written reads back equal, but for what the writer says is lost.
