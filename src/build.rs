@@ -3,6 +3,7 @@
 use crate::arena::Arena;
 use crate::indexed::list;
 use crate::matching::{Chains, NONE, Pairing};
+use crate::report::Attribute;
 use crate::topology::Topology;
 use crate::{IndexedMesh, Mesh, Polygons};
 use glam::DVec3;
@@ -67,8 +68,8 @@ impl Mesh {
     /// Builds the half-edge mesh of a vertex pool.
     ///
     /// The `i`-th of [`vertices`](Mesh::vertices) is vertex `i`, the `i`-th of [`faces`](Mesh::faces) is face `i`, and
-    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. Given normals come
-    /// along. O(corners).
+    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. Given vertex
+    /// normals come along; the mesh holds no other attributes. O(corners).
     ///
     /// # Errors
     /// [`BuildError`] with every defect when the faces do not form an oriented manifold.
@@ -92,6 +93,11 @@ impl Mesh {
         }
         // Only a refusal needs the edges again.
         Err(BuildError { defects: defects(&pool.topology()) })
+    }
+
+    /// Whether a mesh carries an attribute of the pool it is built of.
+    pub(crate) fn carries(attribute: Attribute) -> bool {
+        attribute == Attribute::VertexNormals
     }
 
     /// The vertex pool of the mesh, in the order of the input for what survived, with each face's first corner kept.

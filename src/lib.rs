@@ -21,6 +21,7 @@
 //! `rayon`: bulk work on several threads; results are the same with and without.
 
 mod arena;
+mod attributes;
 mod build;
 pub mod cleanup;
 mod closed;
@@ -43,6 +44,7 @@ mod topology;
 mod validate;
 mod walk;
 
+pub use attributes::{Attributes, FaceGroups, GroupName};
 pub use build::{BuildDefect, BuildError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
@@ -63,7 +65,8 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use report::{
-    Attribute, Element, Kind, MapMismatch, Maps, Outcome, Record, Relation, Report, Step, StepSummary,
+    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
+    Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
 pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};

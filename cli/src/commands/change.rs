@@ -5,33 +5,29 @@ use super::look::fields;
 use crate::args::{Convert, Unify};
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::{import, output};
-use meshwright::{Mesh, unify_winding};
+use meshwright::{IndexedMesh, unify_winding};
 use serde_json::{Map, json};
 
 pub(super) fn convert(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
-    import_change_write(session, args, |_| {})
+    import_change_write(session, args, |pool| pool)
 }
 
 pub(super) fn flip(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
-    import_change_write(session, args, Mesh::reverse)
+    import_change_write(session, args, IndexedMesh::reversed)
 }
 
 fn import_change_write(
     session: &mut Session,
     args: &Convert,
-    change: impl FnOnce(&mut Mesh),
+    change: impl FnOnce(IndexedMesh) -> IndexedMesh,
 ) -> Result<Answer, Failure> {
     args.output.format()?;
-    let (mut mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
-    session.timed(Phase::Run, || change(&mut mesh));
-    let soup = mesh.to_indexed().into();
-    let lost = output::write_mesh(session, &args.output, &soup)?;
-    let json = json!({
-        "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "lost": lost, "import": import,
-    });
-    let destination = args.output.output.display();
-    let text =
-        format!("wrote {destination}: {} vertices, {} faces\n", mesh.vertex_count(), mesh.face_count());
+    let (pool, import) = import::pool(session, &args.file, args.strict.strict)?;
+    let pool = session.timed(Phase::Run, || change(pool));
+    let (vertices, faces) = (pool.vertex_count(), pool.face_count());
+    let lost = output::write_mesh(session, &args.output, &pool.into())?;
+    let json = json!({ "vertices": vertices, "faces": faces, "lost": lost, "import": import });
+    let text = format!("wrote {}: {vertices} vertices, {faces} faces\n", args.output.output.display());
     Ok(Answer { json: fields(json), text, ..Answer::default() })
 }
 
