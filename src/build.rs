@@ -3,7 +3,6 @@
 use crate::arena::Arena;
 use crate::indexed::list;
 use crate::matching::{Chains, NONE, Pairing};
-use crate::report::Attribute;
 use crate::topology::Topology;
 use crate::{IndexedMesh, Mesh, Polygons};
 use glam::DVec3;
@@ -68,8 +67,8 @@ impl Mesh {
     /// Builds the half-edge mesh of a vertex pool.
     ///
     /// The `i`-th of [`vertices`](Mesh::vertices) is vertex `i`, the `i`-th of [`faces`](Mesh::faces) is face `i`, and
-    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. Given vertex
-    /// normals come along; the mesh holds no other attributes. O(corners).
+    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. All
+    /// attributes come along. O(corners).
     ///
     /// # Errors
     /// [`BuildError`] with every defect when the faces do not form an oriented manifold.
@@ -95,13 +94,8 @@ impl Mesh {
         Err(BuildError { defects: defects(&pool.topology()) })
     }
 
-    /// Whether a mesh carries an attribute of the pool it is built of.
-    pub(crate) fn carries(attribute: Attribute) -> bool {
-        attribute == Attribute::VertexNormals
-    }
-
     /// The vertex pool of the mesh, in the order of the input for what survived, with each face's first corner kept.
-    /// Carried normals come along. O(slots).
+    /// Carried attributes come along; user columns are [exported](Self::export_column) apart. O(slots).
     pub fn to_indexed(&self) -> IndexedMesh {
         let order = self.vertices.in_user_order();
         let mut number = vec![0u32; self.vertices.slot_count()];
@@ -113,9 +107,8 @@ impl Mesh {
             let corners = self.loop_slots(self.face_halfedge[f as usize]);
             polygons.push(corners.map(|h| number[self.origin[h as usize] as usize]));
         }
-        let pick = |column: &Vec<DVec3>| order.iter().map(|&v| column[v as usize]).collect();
-        let normals = self.normal_column().map(|n| order.iter().filter_map(|&v| n.get(v).copied()).collect());
-        IndexedMesh::trusted(pick(&self.positions), polygons, normals)
+        let positions = order.iter().map(|&v| self.positions[v as usize]).collect();
+        IndexedMesh::trusted(positions, polygons, None).carrying(self.ordered_attributes(&order))
     }
 }
 
@@ -175,9 +168,7 @@ pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
     if !link_boundary(&mut mesh, &pairing.open) || !each_vertex_has_one_fan(&mesh) {
         return None;
     }
-    if let Some(normals) = pool.normals() {
-        mesh.replace_normals(shifted(normals));
-    }
+    mesh.adopt(pool.attributes(), |corner| pairing.use_of[corner] + 2);
     Some(mesh)
 }
 

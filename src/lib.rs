@@ -44,7 +44,7 @@ mod topology;
 mod validate;
 mod walk;
 
-pub use attributes::{Attributes, FaceGroups, GroupName};
+pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
 pub use build::{BuildDefect, BuildError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};

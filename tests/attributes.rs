@@ -8,7 +8,7 @@ use meshwright::glam::{DVec2, DVec3, dvec2, dvec3};
 use meshwright::io::{self, Encoding, Format, Limits, Lost};
 use meshwright::{
     Attribute, Attributes, CornerData, Element, FaceGroups, Group, GroupName, IndexedDefect, IndexedMesh,
-    Kind, LossReason, LostValue, Outcome, PolygonSoup, unify_winding,
+    Kind, LossReason, LostValue, Mesh, Outcome, PolygonSoup, unify_winding,
 };
 use shapes::{cube, unwelded};
 
@@ -344,4 +344,33 @@ fn textured_files_of_the_corpus_come_through_with_their_seams() {
         files += 1;
     }
     assert!(files >= 25 && seams > 1000, "{files} files with {seams} corners on seams");
+}
+
+#[test]
+fn a_mesh_carries_every_attribute_and_gives_it_back() {
+    let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
+    let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2], [2, 1, 3]]).expect("a pool");
+    let attributes = Attributes {
+        vertex_normals: Some(vec![DVec3::Z, DVec3::X, DVec3::Y, DVec3::ZERO]),
+        vertex_colors: Some(vec![[0.25; 4], [0.5; 4], [0.75; 4], [1.0; 4]]),
+        corner_normals: Some(vec![Some(DVec3::X), None, Some(DVec3::Z), None, None, Some(DVec3::Y)]),
+        corner_uvs: Some((0..6).map(|i| (i != 4).then(|| dvec2(f64::from(i), 0.5))).collect()),
+        face_groups: Some(FaceGroups {
+            names: vec![
+                GroupName { name: "lid".into(), material: Some("steel".into()) },
+                GroupName { name: "base".into(), material: None },
+            ],
+            of: vec![1, 0],
+        }),
+        material_files: vec!["parts.mtl".into()],
+    };
+    let pool = pool.with_attributes(attributes).expect("they fit");
+    let mesh = Mesh::build(&pool).expect("a manifold");
+    assert_eq!(mesh.to_indexed(), pool);
+    assert_eq!(mesh.carried_attributes().len(), 6);
+    let f = mesh.faces().next().expect("a face");
+    assert_eq!(mesh.group(f).map(|g| g.name.as_str()), Some("base"));
+    let mut reversed = mesh.clone();
+    reversed.reverse();
+    assert_eq!(reversed.to_indexed(), pool.reversed());
 }

@@ -1,5 +1,6 @@
 //! Data beside positions and faces: one entry for each vertex, corner or face.
 
+mod mesh;
 mod soup;
 
 use crate::geometry::normals::double_area_vector;
@@ -9,6 +10,8 @@ use crate::{IndexedDefect, Polygons};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
+pub(crate) use mesh::Carried;
+pub use mesh::SetAttributeError;
 pub(crate) use soup::{faces_in_two, from_soup};
 
 /// What a vertex pool carries beside positions and faces.

@@ -94,8 +94,7 @@ pub enum CleanError {
 /// apart. Where vertices with different normals become one, vertex normals become normals of corners; of different
 /// colours the lowest vertex's stays. The corner normals of a flipped face turn with it, unless they lie on the side where
 /// it then faces. What lies in the middle of a parted edge is the mean of its ends. Values that are not finite are left
-/// out. [`Report::not_carried`] names the attributes that the result does not have (the mesh holds vertex normals only;
-/// [`clean_indexed`] all of them), [`Report::lost_values`] the single values.
+/// out. [`Report::not_carried`] names the attributes that the result does not have, [`Report::lost_values`] the single values.
 ///
 /// O(n log n) in the corners at worst, linear without defects.
 ///
@@ -117,7 +116,7 @@ pub enum CleanError {
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
     let cleaned = run(soup, options)?;
     let (value, maps) = (cleaned.mesh, cleaned.maps);
-    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried, Mesh::carries), maps })
+    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried, |_| true), maps })
 }
 
 /// As [`clean`], but gives the vertex pool that the mesh is built of, with all its attributes: for whoever writes the

@@ -1,6 +1,5 @@
 //! Reversing the winding of a component, or of the whole mesh.
 
-use crate::column::Kind;
 use crate::matching::NONE;
 use crate::{FaceKey, Mesh};
 
@@ -85,16 +84,12 @@ impl Mesh {
             if h != NONE {
                 self.set_vertex_halfedge(v, self.prev[h as usize]);
             }
-            if let Some(column) = self.normals
-                && let Some(normal) = self.normal_column().and_then(|n| n.get(v).copied())
-            {
-                self.write_value(Kind::Vertex, column.index, v, -normal);
-            }
         }
         for &f in faces {
             self.rotate_corners(self.face_halfedge[f as usize]);
             self.set_face_halfedge(f, self.prev[self.face_halfedge[f as usize] as usize]);
         }
+        self.negate_normals(vertices, faces);
         for &e in edges {
             let (h, t) = (2 * e, 2 * e + 1);
             let (a, b) = (self.origin[h as usize], self.origin[t as usize]);
