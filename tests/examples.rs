@@ -43,7 +43,7 @@ fn select_features_finds_the_creases_and_the_walls_of_the_rounded_block() {
     let total: f64 = found.paths.iter().map(|p| p.length).sum();
     let rim = 2.0 * (40.0 + 20.0) - 2.0 * 8.0 + found.arc;
     assert!((total - 2.0 * rim - 3.0 * 10.0).abs() < 1e-9, "{total}");
-    assert_eq!(found.walls, [1, 10, 1, 1, 1], "the rounded corner joins two sides");
+    assert_eq!(found.walls, [1, 1, 10, 1, 1], "the rounded corner joins two sides");
 }
 
 #[test]

@@ -1,16 +1,16 @@
 //! Breadth-first walks that spread from one element: rings of vertices and faces, regions of faces.
 
-use super::read_with;
+use super::{SlotSet, read_with};
 use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh, VertexKey};
-use std::collections::{HashSet, VecDeque};
+use std::collections::VecDeque;
 
 /// Slots in breadth-first order, each once, with its distance from the first in steps.
 ///
 /// A slot's neighbours are looked at when it is handed out, so a walk that is dropped early has cost little.
 struct Flood<S, M> {
     queue: VecDeque<(u32, u32)>,
-    reached: HashSet<u32>,
+    reached: SlotSet,
     /// No further than this.
     limit: u32,
     /// From a slot, each half-edge that leads on and the slot it leads to.
@@ -21,7 +21,7 @@ struct Flood<S, M> {
 
 impl<I: Iterator<Item = (u32, u32)>, S: Fn(u32) -> I, M: FnMut(u32) -> bool> Flood<S, M> {
     fn new(first: u32, limit: u32, steps: S, may: M) -> Self {
-        Self { queue: [(first, 0)].into(), reached: [first].into(), limit, steps, may }
+        Self { queue: [(first, 0)].into(), reached: SlotSet::from_iter([first]), limit, steps, may }
     }
 }
 

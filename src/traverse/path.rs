@@ -1,9 +1,10 @@
 //! Shortest paths along edges.
 
+use super::BySlot;
 use crate::geometry::distance;
 use crate::{HalfedgeKey, Mesh, VertexKey};
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::BinaryHeap;
 
 /// A path along edges from one vertex to another.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +106,7 @@ impl Mesh {
     ) -> Result<Option<EdgePath>, PathError> {
         let from = self.vertex_slot(a).ok_or(PathError::Missing(a))?;
         let to = self.vertex_slot(b).ok_or(PathError::Missing(b))?;
-        let mut labels = HashMap::from([(from, Label { length: 0.0, edges: 0, by: u32::MAX })]);
+        let mut labels = BySlot::from_iter([(from, Label { length: 0.0, edges: 0, by: u32::MAX })]);
         // Lengths are not negative, so their bits order as they do.
         let mut heap = BinaryHeap::from([Reverse((0.0f64.to_bits(), 0u32, from))]);
         while let Some(Reverse((bits, edges, v))) = heap.pop() {
@@ -133,7 +134,7 @@ impl Mesh {
         Ok(None)
     }
 
-    fn path_to(&self, to: u32, from: u32, labels: &HashMap<u32, Label>, length: f64) -> EdgePath {
+    fn path_to(&self, to: u32, from: u32, labels: &BySlot<Label>, length: f64) -> EdgePath {
         let mut halfedges = Vec::new();
         let mut at = to;
         while at != from

@@ -1,9 +1,8 @@
 //! Smooth regions of faces, and the boundaries of regions.
 
-use super::read_with;
+use super::{BySlot, SlotSet, read_with};
 use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh};
-use std::collections::{HashMap, HashSet};
 
 impl Mesh {
     read_with! {
@@ -27,7 +26,7 @@ impl Mesh {
         /// # Ok::<(), Box<dyn std::error::Error>>(())
         /// ```
         smooth_region, get_smooth_region(self, f: FaceKey => face_slot, angle: f64) -> impl Iterator<Item = FaceKey> {
-            let mut normals = HashMap::new();
+            let mut normals = BySlot::default();
             let mut normal = move |f| *normals.entry(f).or_insert_with(|| self.normal_of_face(f));
             let smooth = move |h| self.turn_at(h, &mut normal).is_none_or(|turn| !is_sharp(turn, angle));
             self.flood_faces(f, u32::MAX, smooth).map(|(f, _)| self.faces.key(f))
@@ -78,12 +77,12 @@ impl Mesh {
     }
 
     fn boundary_of(&self, faces: &[u32]) -> Vec<Vec<HalfedgeKey>> {
-        let inside: HashSet<u32> = faces.iter().copied().collect();
+        let inside: SlotSet = faces.iter().copied().collect();
         let leaves = |h: u32| {
             let f = self.face[h as usize ^ 1];
             f == NONE || !inside.contains(&f)
         };
-        let mut done = HashSet::new();
+        let mut done = SlotSet::default();
         let mut loops = Vec::new();
         for first in faces.iter().flat_map(|&f| self.loop_slots(self.face_halfedge[f as usize])) {
             if !leaves(first) || done.contains(&first) {
