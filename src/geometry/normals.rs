@@ -127,7 +127,7 @@ impl Mesh {
     }
 
     pub(crate) fn normal_of_face(&self, f: u32) -> DVec3 {
-        let first = self.long_side(self.face_halfedge[f as usize]);
+        let first = self.corner_across_longest(self.face_halfedge[f as usize]);
         let corners = || self.loop_slots(first).map(|h| self.at(h));
         let scale = unit_scale(corners());
         direction(double_area_vector(corners().map(|p| p * scale)))
@@ -135,7 +135,7 @@ impl Mesh {
 
     /// The half-edge of a triangle whose origin lies across from its longest side: of a sliver, only the product of the
     /// two shorter sides keeps the digits of the normal. The half-edge itself on other faces.
-    fn long_side(&self, h: u32) -> u32 {
+    fn corner_across_longest(&self, h: u32) -> u32 {
         let [a, b, c] = [h, self.next[h as usize], self.prev[h as usize]];
         if self.next[b as usize] != c {
             return h;

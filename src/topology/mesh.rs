@@ -9,12 +9,12 @@ use crate::{FaceKey, HalfedgeKey, Mesh};
 pub struct MissingFace(pub FaceKey);
 
 impl Mesh {
-    /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(edges).
+    /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(slots).
     pub fn is_closed(&self) -> bool {
         self.face_count() > 0 && self.boundary_slots().next().is_none()
     }
 
-    /// The half-edges without a face, in the order of edges. O(edges).
+    /// The half-edges without a face, in the order of edges. O(slots).
     pub fn boundary_halfedges(&self) -> impl Iterator<Item = HalfedgeKey> + '_ {
         self.boundary_slots().map(|h| self.halfedge_key(h))
     }
@@ -24,7 +24,7 @@ impl Mesh {
     }
 
     /// The boundary loops (naked edges), each as its half-edges in [`next`](Self::next) order, in the order of their
-    /// first edges. A closed mesh has none. O(edges).
+    /// first edges. A closed mesh has none. O(slots).
     ///
     /// # Examples
     /// ```
@@ -53,7 +53,7 @@ impl Mesh {
     }
 
     /// The components: faces joined across edges, each list in the order of a breadth-first walk from its first face,
-    /// the lists in the order of their first faces. O(half-edges).
+    /// the lists in the order of their first faces. O(slots).
     ///
     /// # Examples
     /// ```
@@ -93,14 +93,14 @@ impl Mesh {
         faces
     }
 
-    /// Vertices that have a face, less edges, plus faces. O(vertices).
+    /// Vertices that have a face, less edges, plus faces. O(slots).
     pub fn euler_characteristic(&self) -> i64 {
         let used = self.vertices.live().filter(|&v| self.vertex_halfedge[v as usize] != NONE).count();
         used as i64 - self.edge_count() as i64 + self.face_count() as i64
     }
 
     /// Flips the mesh: reverses the winding of every face and negates carried normals. Twice is the identity; all keys
-    /// stay valid, each half-edge stays with its face and now runs the other way. O(elements).
+    /// stay valid, each half-edge stays with its face and now runs the other way. O(slots).
     ///
     /// # Examples
     /// ```
@@ -120,8 +120,8 @@ impl Mesh {
         self.reverse_elements(&edges, &vertices, &faces);
     }
 
-    /// Flips one component: reverses the winding of every face that can be reached from `f` across edges. O(its size),
-    /// and one byte per slot of the mesh.
+    /// Flips one component: reverses the winding of every face that can be reached from `f` across edges, and negates
+    /// the normals its vertices carry. As with [`reverse`](Self::reverse) all keys stay valid. O(its size).
     ///
     /// # Errors
     /// [`MissingFace`] on a dead key.
@@ -139,18 +139,21 @@ impl Mesh {
     /// ```
     pub fn reverse_component(&mut self, f: FaceKey) -> Result<(), MissingFace> {
         let first = self.face_slot(f).ok_or(MissingFace(f))?;
-        let faces = self.component_slots(first, &mut vec![false; self.faces.slot_count()]);
+        let faces: Vec<u32> = self.flood_faces(first, u32::MAX, |_| true).map(|(f, _)| f).collect();
         let mut edges = Vec::new();
         let mut vertices = Vec::new();
         for &f in &faces {
             for h in self.loop_slots(self.face_halfedge[f as usize]) {
-                edges.push(h >> 1);
-                vertices.push(self.origin[h as usize]);
+                // Each edge at the even one of its half-edges that have a face, each vertex at its first corner.
+                if h & 1 == 0 || self.face[h as usize ^ 1] == NONE {
+                    edges.push(h >> 1);
+                }
+                let v = self.origin[h as usize];
+                let first = self.vertex_halfedge[v as usize];
+                if h == first || self.face[first as usize] == NONE && h == self.next[first as usize ^ 1] {
+                    vertices.push(v);
+                }
             }
-        }
-        for list in [&mut edges, &mut vertices] {
-            list.sort_unstable();
-            list.dedup();
         }
         self.reverse_elements(&edges, &vertices, &faces);
         Ok(())

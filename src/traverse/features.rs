@@ -17,7 +17,7 @@ pub struct FeatureOptions {
 }
 
 impl Mesh {
-    /// The feature edges: sharp ones and, if asked for, boundary edges; in storage order. O(corners).
+    /// The feature edges: sharp ones and, if asked for, boundary edges; in storage order. O(slots).
     ///
     /// # Examples
     /// ```
@@ -40,7 +40,7 @@ impl Mesh {
     /// A corner is a vertex with one feature edge or with three or more; where there are two, a path goes on. A path that
     /// comes back to the corner it began at is not closed: closed ones have no corner. Each path runs as the
     /// [`edge_halfedge`](Self::edge_halfedge) of its first edge in storage order, and a closed one begins there; the
-    /// paths come in the order of those edges. O(elements).
+    /// paths come in the order of those edges. O(slots).
     ///
     /// # Examples
     /// ```

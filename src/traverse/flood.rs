@@ -1,6 +1,7 @@
 //! Breadth-first walks that spread from one element: rings of vertices and faces, regions of faces.
 
-use super::{SlotSet, read_with};
+use super::read_with;
+use super::slots::SlotSet;
 use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh, VertexKey};
 use std::collections::VecDeque;
@@ -121,7 +122,7 @@ impl Mesh {
 
     /// Faces from `f` across at most `limit` edges whose half-edge on the near side may be taken, with the number of
     /// edges crossed.
-    pub(super) fn flood_faces(
+    pub(crate) fn flood_faces(
         &self,
         f: u32,
         limit: u32,

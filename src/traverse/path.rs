@@ -1,6 +1,6 @@
 //! Shortest paths along edges.
 
-use super::BySlot;
+use super::slots::BySlot;
 use crate::geometry::distance;
 use crate::{HalfedgeKey, Mesh, VertexKey};
 use std::cmp::Reverse;

@@ -1,6 +1,7 @@
 //! Smooth regions of faces, and the boundaries of regions.
 
-use super::{BySlot, SlotSet, read_with};
+use super::read_with;
+use super::slots::{BySlot, SlotSet};
 use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh};
 
