@@ -10,10 +10,10 @@ impl Mesh {
     read! {
         /// The signed dihedral angle of an edge: by how much the surface turns there, in radians within ±π.
         ///
-        /// 0 where it is flat, positive where it is convex (π/2 along the edges of a cube), negative where it is concave,
-        /// close to ±π where it folds back on itself. In size it is the angle between the normals of the two faces
-        /// ([`face_normal`](Self::face_normal)). `None` if there is only one face, or if a face has no
-        /// area or the edge no length. O(corners of the two faces).
+        /// 0 where it is flat, positive where it is convex (π/2 along the edges of a cube), negative where it is
+        /// concave, close to ±π where it folds back on itself. In size it is the angle between the normals of the two
+        /// faces ([`face_normal`](Self::face_normal)). `None` if there is only one face, or if a face has no area or
+        /// the edge no length. O(corners of the two faces).
         ///
         /// # Examples
         /// ```

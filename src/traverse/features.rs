@@ -37,8 +37,8 @@ impl Mesh {
 
     /// The feature edges, strung into paths that end at corners or close.
     ///
-    /// A corner is a vertex with one feature edge or with three or more; where there are two, a path goes on. A path that
-    /// comes back to the corner it began at is not closed: closed ones have no corner. Each path runs as the
+    /// A corner is a vertex with one feature edge or with three or more; where there are two, a path goes on. A path
+    /// that comes back to the corner it began at is not closed: closed ones have no corner. Each path runs as the
     /// [`edge_halfedge`](Self::edge_halfedge) of its first edge in storage order, and a closed one begins there; the
     /// paths come in the order of those edges. O(slots).
     ///

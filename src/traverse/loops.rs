@@ -10,9 +10,10 @@ impl Mesh {
         /// The edge loop through a half-edge: straight on from edge to edge.
         ///
         /// At an inner vertex with four edges it takes the one opposite; at any other it ends, and at the boundary,
-        /// whatever the faces are. A boundary edge's loop is its boundary loop. All half-edges run the way the given one
-        /// does; an open loop is listed from its first edge to its last, the given one somewhere between, a closed
-        /// one from the given one on. It may cross itself and holds each edge once all the same. O(edges found).
+        /// whatever the faces are. A boundary edge's loop is its boundary loop. All half-edges run the way the given
+        /// one does; an open loop is listed from its first edge to its last, the given one somewhere between, a
+        /// closed one from the given one on. It may cross itself and holds each edge once all the same. O(edges
+        /// found).
         ///
         /// # Examples
         /// ```
@@ -34,12 +35,13 @@ impl Mesh {
     }
 
     read! {
-        /// The edge ring through a half-edge: across quads from each edge to the opposite one, as the rungs of a ladder.
+        /// The edge ring through a half-edge: across quads from each edge to the opposite one, as the rungs of a
+        /// ladder.
         ///
         /// It ends at the boundary and at faces that are no quads. All half-edges run the way the given one does, so
-        /// that the face of each is the quad crossed next; an open ring is listed from its first rung to its last, the
-        /// given one somewhere between, a closed one from the given one on. It may cross itself and holds each edge
-        /// once all the same. O(edges found).
+        /// that the face of each is the quad crossed next; an open ring is listed from its first rung to its last,
+        /// the given one somewhere between, a closed one from the given one on. It may cross itself and holds each
+        /// edge once all the same. O(edges found).
         ///
         /// # Examples
         /// ```
@@ -60,8 +62,8 @@ impl Mesh {
 
     /// Half-edges from `h` on by `step` and, if that does not come back to `h`, from before it.
     ///
-    /// `step` must be reversible: `step(h) == g` exactly when `step(twin(g)) == twin(h)`. Then it is one-to-one, a walk
-    /// that comes back to any half-edge comes back to its first, and stepping from the twin leads backwards.
+    /// `step` must be reversible: `step(h) == g` exactly when `step(twin(g)) == twin(h)`. Then it is one-to-one, a
+    /// walk that comes back to any half-edge comes back to its first, and stepping from the twin leads backwards.
     pub(super) fn chain(&self, h: u32, step: impl Fn(u32) -> Option<u32>) -> EdgeChain {
         let mut forth = vec![h];
         let mut at = h;

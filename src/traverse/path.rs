@@ -43,9 +43,9 @@ struct Label {
 impl Mesh {
     /// The shortest path along edges from `a` to `b`, or `None` if there is none.
     ///
-    /// Of paths equally long (as f64 adds up, from `a` on) one with the fewest edges is taken; which of those is settled
-    /// by storage order. Costs O(n log n) for the n half-edges at vertices nearer to `a` than `b` is; nothing else is
-    /// looked at. (Dijkstra, "A note on two problems in connexion with graphs", 1959.)
+    /// Of paths equally long (as f64 adds up, from `a` on) one with the fewest edges is taken; which of those is
+    /// settled by storage order. Costs O(n log n) for the n half-edges at vertices nearer to `a` than `b` is; nothing
+    /// else is looked at. (Dijkstra, "A note on two problems in connexion with graphs", 1959.)
     ///
     /// # Errors
     /// [`PathError`] on a dead key, and when an edge is longer than an f64 can tell.
@@ -68,10 +68,10 @@ impl Mesh {
 
     /// The path along edges from `a` to `b` whose half-edges cost least in sum, or `None` if there is none.
     ///
-    /// As [`shortest_path`](Self::shortest_path), with a cost for each half-edge instead of its length: finite and not
-    /// negative. It is asked at most once for each half-edge, and may differ between the two directions of an edge. To
-    /// close an edge to the path, give it a cost no path would pay, and look at what the path cost in the end. A sum
-    /// beyond f64 is infinite.
+    /// As [`shortest_path`](Self::shortest_path), with a cost for each half-edge instead of its length: finite and
+    /// not negative. It is asked at most once for each half-edge, and may differ between the two directions of an
+    /// edge. To close an edge to the path, give it a cost no path would pay, and look at what the path cost in the
+    /// end. A sum beyond f64 is infinite.
     ///
     /// # Errors
     /// [`PathError`] on a dead key, and at the first cost met that is negative, NaN or infinite.

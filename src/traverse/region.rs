@@ -10,9 +10,9 @@ impl Mesh {
         /// The smooth region of a face: the faces that can be reached across edges that are not sharp, each once,
         /// breadth-first; the face itself comes first.
         ///
-        /// An edge is sharp if its [`dihedral_angle`](Self::dihedral_angle) is greater than `angle` in radians, either
-        /// way: exactly the edges that [`feature_edges`](Self::feature_edges) lists. Costs the corners of what it has
-        /// reached.
+        /// An edge is sharp if its [`dihedral_angle`](Self::dihedral_angle) is greater than `angle` in radians,
+        /// either way: exactly the edges that [`feature_edges`](Self::feature_edges) lists. Costs the corners of what
+        /// it has reached.
         ///
         /// # Examples
         /// ```
@@ -26,7 +26,9 @@ impl Mesh {
         /// assert_eq!(mesh.smooth_region(f, 1.6).count(), 3);
         /// # Ok::<(), Box<dyn std::error::Error>>(())
         /// ```
-        smooth_region, get_smooth_region(self, f: FaceKey => face_slot, angle: f64) -> impl Iterator<Item = FaceKey> {
+        smooth_region, get_smooth_region(self, f: FaceKey => face_slot, angle: f64)
+            -> impl Iterator<Item = FaceKey>
+        {
             let mut normals = BySlot::default();
             let mut normal = move |f| *normals.entry(f).or_insert_with(|| self.normal_of_face(f));
             let smooth = move |h| self.turn_at(h, &mut normal).is_none_or(|turn| !is_sharp(turn, angle));
@@ -37,9 +39,10 @@ impl Mesh {
     /// The boundary of a set of faces, as loops of the half-edges of those faces that have a face outside the set, or
     /// none, on the other side.
     ///
-    /// The set lies to the left of its loops. At a vertex where it touches itself a loop turns around one wedge of its
-    /// faces, and goes on past the others. The loops come in the order of their first half-edges: by faces as given, then around each face. Faces given
-    /// twice count once; a whole component without boundary has no loops. O(corners of the faces).
+    /// The set lies to the left of its loops. At a vertex where it touches itself a loop turns around one wedge of
+    /// its faces, and goes on past the others. The loops come in the order of their first half-edges: by faces as
+    /// given, then around each face. Faces given twice count once; a whole component without boundary has no loops.
+    /// O(corners of the faces).
     ///
     /// # Panics
     /// On a dead key; [`get_region_boundary`](Self::get_region_boundary) does not.
