@@ -11,7 +11,8 @@
 //! | [`Closed`] | no boundary: the door to volume | [`NotClosed`] |
 //!
 //! [`cleanup::clean`] goes from any soup to a valid `Mesh` and says what it changed.
-//! The [design page](design) has the module graph and the numbered invariants.
+//! The [design page](design) has the module graph and the numbered invariants, the [walking page](walking) the orders
+//! of walks and how to edit while walking.
 //!
 //! Lengths are in the units of the input; angles are in radians unless a name says degrees. Nothing is random and
 //! nothing depends on hash order or on the number of threads.
@@ -41,8 +42,11 @@ mod parallel;
 mod report;
 mod soup;
 mod topology;
+mod traverse;
 mod validate;
 mod walk;
+#[doc = include_str!("walking.md")]
+pub mod walking {}
 
 pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
 pub use build::{BuildDefect, BuildError};
@@ -70,6 +74,7 @@ pub use report::{
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
 pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 
 /// The README's program runs.

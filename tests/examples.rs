@@ -8,6 +8,8 @@ mod clean_import;
 mod make_sample;
 #[path = "../examples/one_ring.rs"]
 mod one_ring;
+#[path = "../examples/select_features.rs"]
+mod select_features;
 
 use std::path::Path;
 
@@ -32,6 +34,16 @@ fn boundary_loops_finds_the_outline_and_the_hole() {
     let mut lengths = boundary_loops::run().expect("runs");
     lengths.sort_by(f64::total_cmp);
     assert_eq!(lengths, [4.0, 12.0]);
+}
+
+#[test]
+fn select_features_finds_the_creases_and_the_walls_of_the_rounded_block() {
+    let found = select_features::run().expect("runs");
+    assert_eq!(found.paths.len(), 9, "three upright edges, and three stretches of either rim");
+    let total: f64 = found.paths.iter().map(|p| p.length).sum();
+    let rim = 2.0 * (40.0 + 20.0) - 2.0 * 8.0 + found.arc;
+    assert!((total - 2.0 * rim - 3.0 * 10.0).abs() < 1e-9, "{total}");
+    assert_eq!(found.walls, [1, 1, 10, 1, 1], "the rounded corner joins two sides");
 }
 
 #[test]
