@@ -175,9 +175,15 @@ fn large_polygons_keep_their_texture_coordinates_in_ply() {
     let points: Vec<DVec3> = (0..130).map(|i| dvec3(f64::from(i), f64::from(i * i), 0.0)).collect();
     let faces = vec![(0..130).collect(), vec![0, 1, 2]];
     let mut soup = PolygonSoup::new(points, faces.into());
-    let values = (0..133).map(|c| [f64::from(c) / 7.0, 0.1]).collect();
-    soup.corner_uvs = Some(CornerData { values, indices: (0..133).collect() });
-    for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::BigEndian] {
-        assert_eq!(read(&written(&soup, Format::Ply, encoding).0, Format::Ply).soup, soup);
+    let single = |x: f64| f64::from(x as f32);
+    for (round, header) in [((|x| x) as fn(f64) -> f64, "double texcoord"), (single, "float texcoord")] {
+        let values = (0..133).map(|c| [round(f64::from(c) / 7.0), -0.0]).collect();
+        soup.corner_uvs = Some(CornerData { values, indices: (0..133).collect() });
+        for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::BigEndian] {
+            let (file, lost) = written(&soup, Format::Ply, encoding);
+            assert!(String::from_utf8_lossy(&file).contains(header) && lost.is_empty());
+            let back = read(&file, Format::Ply).soup;
+            assert_eq!(format!("{back:?}"), format!("{soup:?}"), "the sign of zero included");
+        }
     }
 }
