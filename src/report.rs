@@ -195,7 +195,8 @@ pub struct StepSummary {
     pub tolerance: Option<f64>,
 }
 
-/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell.
+/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell. What happened to
+/// attributes stands apart.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {

@@ -204,6 +204,28 @@ fn a_face_that_touches_itself_keeps_the_two_values_at_the_vertex_it_names_twice(
 }
 
 #[test]
+fn in_the_middle_of_a_parted_edge_lies_the_mean_of_its_ends() {
+    let mut noise = shapes::Noise(0);
+    let mut met = 0;
+    for _ in 0..4000 {
+        let points = (0..7).map(|_| dvec3(noise.unit(), noise.unit(), noise.unit())).collect();
+        let faces = (0..12).map(|_| [(); 3].map(|()| noise.below(7))).collect();
+        let mut soup = PolygonSoup::new(points, faces);
+        let values = soup.positions.iter().map(|p| p.truncate().into()).collect();
+        soup.corner_uvs = Some(CornerData { values, indices: soup.polygons.corners().to_vec() });
+        soup.vertex_normals = vec![DVec3::Z; 7];
+        let outcome = cleaned(&soup);
+        met += outcome.report.count(Kind::ParallelEdge);
+        let pool = &outcome.value;
+        for (&v, uv) in pool.polygons().corners().iter().zip(uvs(pool)) {
+            assert_eq!(uv, Some(pool.positions()[v as usize].truncate()), "linear as it was");
+        }
+        assert!(pool.normals().expect("carried").iter().all(|n| *n == DVec3::Z));
+    }
+    assert!(met > 2, "only {met} came up");
+}
+
+#[test]
 fn values_that_are_not_finite_or_do_not_exist_are_left_out_and_named() {
     let mut soup = read(textured_cube().as_bytes(), Format::Obj);
     let data = soup.corner_uvs.as_mut().expect("given");

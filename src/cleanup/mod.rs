@@ -114,8 +114,8 @@ pub enum CleanError {
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
-    let cleaned = run(soup, options)?;
-    let (value, maps) = (cleaned.mesh, cleaned.maps);
+    let cleaned = run(soup, options, |mesh| mesh)?;
+    let (value, maps) = (cleaned.kept, cleaned.maps);
     Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried, |_| true), maps })
 }
 
@@ -143,21 +143,25 @@ pub fn clean_indexed(
     soup: &PolygonSoup,
     options: CleanOptions<'_>,
 ) -> Result<Outcome<IndexedMesh>, CleanError> {
-    let cleaned = run(soup, options)?;
+    let cleaned = run(soup, options, drop)?;
     let (value, maps) = (cleaned.indexed, cleaned.maps);
     Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried, |_| true), maps })
 }
 
-/// What a clean-up arrives at: the mesh, and the pool it was built of.
-struct Cleaned {
+/// What a clean-up arrives at: a pool, and what is kept of the mesh that was built of it.
+struct Cleaned<M> {
     indexed: IndexedMesh,
-    mesh: Mesh,
+    kept: M,
     carried: Carried,
     report: Report,
     maps: Maps,
 }
 
-fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Cleaned, CleanError> {
+fn run<M>(
+    soup: &PolygonSoup,
+    options: CleanOptions<'_>,
+    keep: impl FnOnce(Mesh) -> M,
+) -> Result<Cleaned<M>, CleanError> {
     let Profile::Preserve = options.profile;
     let mut control = options.control;
     let mut pool = Pool::new(soup, options.weld, &mut control)?;
@@ -169,8 +173,9 @@ fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Cleaned, CleanEr
         let mut carried = pool.carry_welded();
         let indexed = pool.lend(std::mem::take(&mut carried.attributes));
         if let Some(mesh) = assemble(&indexed, &chains.into_pairing()) {
+            let kept = keep(mesh);
             let (report, maps) = pool.account(indexed.positions());
-            return Ok(Cleaned { indexed, mesh, carried, report, maps });
+            return Ok(Cleaned { indexed, kept, carried, report, maps });
         }
         pool.take_back(indexed);
     }
@@ -192,8 +197,8 @@ fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Cleaned, CleanEr
     pool.positions = positions;
     let mut carried = carry::carry(&pool, |v| maps.vertices.new_of(v));
     let indexed = pool.lend(std::mem::take(&mut carried.attributes));
-    let mesh = Mesh::build(&indexed).map_err(CleanError::Bug)?;
-    Ok(Cleaned { indexed, mesh, carried, report: pool.report, maps })
+    let kept = keep(Mesh::build(&indexed).map_err(CleanError::Bug)?);
+    Ok(Cleaned { indexed, kept, carried, report: pool.report, maps })
 }
 
 /// The report with what a result that can hold these attributes does not have.

@@ -8,7 +8,7 @@ use std::io::Write;
 
 /// Writes a little-endian PLY file: positions, normals and texture coordinates in double precision, colours as bytes if they
 /// were bytes. Normals stand at vertices; so do texture coordinates if all corners of each vertex have the same, and
-/// if not, each face has a list of them (`texcoord`).
+/// if not, each face has a list of them (`texcoord`), in single precision if they fit.
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
@@ -26,6 +26,7 @@ pub fn write_ply(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
     write(soup, "binary_little_endian", sink, |sink, v| match v {
         Value::Double(x) => sink.write_all(&x.to_le_bytes()),
         Value::Float(x) => sink.write_all(&x.to_le_bytes()),
+        Value::Single(x) => sink.write_all(&(x as f32).to_le_bytes()),
         Value::Byte(x) => sink.write_all(&[x]),
         Value::Index(x) => sink.write_all(&x.to_le_bytes()),
         Value::EndOfElement => Ok(()),
@@ -50,6 +51,7 @@ pub fn write_ply_big_endian(soup: &PolygonSoup, sink: &mut impl Write) -> Result
     write(soup, "binary_big_endian", sink, |sink, v| match v {
         Value::Double(x) => sink.write_all(&x.to_be_bytes()),
         Value::Float(x) => sink.write_all(&x.to_be_bytes()),
+        Value::Single(x) => sink.write_all(&(x as f32).to_be_bytes()),
         Value::Byte(x) => sink.write_all(&[x]),
         Value::Index(x) => sink.write_all(&x.to_be_bytes()),
         Value::EndOfElement => Ok(()),
@@ -75,7 +77,7 @@ pub fn write_ply_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<
     write(soup, "ascii", sink, |sink, v| {
         let before = std::mem::replace(&mut separator, " ");
         match v {
-            Value::Double(x) => write!(sink, "{before}{}", Number(x)),
+            Value::Double(x) | Value::Single(x) => write!(sink, "{before}{}", Number(x)),
             Value::Float(x) => write!(sink, "{before}{x}"),
             Value::Byte(x) => write!(sink, "{before}{x}"),
             Value::Index(x) => write!(sink, "{before}{x}"),
@@ -90,6 +92,8 @@ pub fn write_ply_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<
 enum Value {
     Double(f64),
     Float(f32),
+    /// Fits single precision; in text it has the digits of double.
+    Single(f64),
     Byte(u8),
     Index(u32),
     EndOfElement,
@@ -110,6 +114,8 @@ fn write<W: Write>(
     let corners = soup.polygons.corners().len();
     let of_faces = soup.corner_uvs.as_ref().filter(|d| uvs.is_none() && d.indices.len() == corners);
     let of_faces = of_faces.filter(|d| has_values(Some(*d)));
+    let fits_single = |x: f64| f64::from(x as f32).to_bits() == x.to_bits();
+    let is_single = of_faces.is_some_and(|d| d.values.iter().flatten().all(|&x| fits_single(x)));
 
     writeln!(sink, "ply\nformat {encoding} 1.0\nelement vertex {}", soup.positions.len())?;
     let mut properties = |names: &[&str], kind: &str| {
@@ -131,7 +137,9 @@ fn write<W: Write>(
     let list = |most| if is_small(most) { "list uchar" } else { "list uint" };
     writeln!(sink, "element face {}\nproperty {} uint vertex_indices", soup.polygons.len(), list(most))?;
     if of_faces.is_some() {
-        writeln!(sink, "property {} double texcoord", list(2 * most))?;
+        // Programs that know of such lists expect them in single precision.
+        let kind = if is_single { "float" } else { "double" };
+        writeln!(sink, "property {} {kind} texcoord", list(2 * most))?;
     }
     writeln!(sink, "end_header")?;
     let count = |n: usize, most| if is_small(most) { Value::Byte(n as u8) } else { Value::Index(n as u32) };
@@ -162,7 +170,7 @@ fn write<W: Write>(
             is_whole &= is_complete || own.clone().all(|c| uv(data, c).is_none());
             put(sink, count(if is_complete { 2 * face.len() } else { 0 }, 2 * most))?;
             for x in own.filter(|_| is_complete).filter_map(|c| uv(data, c)).flatten() {
-                put(sink, Value::Double(x))?;
+                put(sink, if is_single { Value::Single(x) } else { Value::Double(x) })?;
             }
             first += face.len();
         }
