@@ -360,8 +360,9 @@ impl Mapped {
             self.mesh.apex(h).is_some()
                 && others.iter().all(|&e| self.is_marked(e) || self.mesh.is_boundary_edge(e))
         });
-        let moves_end =
-            self.is_marked(self.mesh.edge(h)) && sides.iter().any(|&h| !self.is_split(self.mesh.origin(h)));
+        // Whether both sides hold the same value at the end where a half-edge starts.
+        let is_same = |h| self.mesh.value(self.uv, h) == self.mesh.value(self.uv, self.mesh.rotate_cw(h));
+        let moves_end = self.is_marked(self.mesh.edge(h)) && sides.iter().any(|&h| is_same(h));
         !merges_two && !moves_end
     }
 

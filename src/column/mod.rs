@@ -8,10 +8,10 @@
 //! poking keep seams where they are; [`flip_edge`](Mesh::flip_edge), [`join_faces`](Mesh::join_faces) and
 //! [`dissolve_vertex`](Mesh::dissolve_vertex) take edges away, so ask [`is_seam`](Mesh::is_seam) first where seams matter.
 //!
-//! A seam may *end* inside the surface, at a vertex whose corners all hold the same value; it is told apart there by the
-//! values at its other vertices. Collapsing its last edge moves the end to the vertex that is left; so the collapse of a
-//! seam whose only vertex with two values is an end of the edge takes the seam away. Where a collapse takes the last
-//! triangle between two seams, they become one edge, which is a seam if the values beyond them differ.
+//! A seam *ends* inside the surface where both sides of its last edge hold the same value at one end, and differ at the
+//! other. Collapsing that edge makes both sides one at the vertex that is left, where the seam ends then; so a seam of
+//! which the edge's other end was the only vertex with two values is gone. Where a collapse takes the last triangle
+//! between two seams, they become one edge, which is a seam if the values beyond them differ.
 //!
 //! A mesh without columns pays one comparison for each element that an operator makes or merges.
 
