@@ -110,7 +110,8 @@ impl Mesh {
         loop {
             self.set_face(h, g);
             if self.face_halfedge[f as usize] == h {
-                self.set_face_halfedge(f, a);
+                // The first corner stays if its vertex does.
+                self.set_face_halfedge(f, if h == b { n ^ 1 } else { a });
             }
             h = self.next[h as usize];
             if h == b {
