@@ -69,8 +69,11 @@ pub(crate) struct Changes {
     list: Vec<Change>,
     /// How many stand, fetched or not: those taken back are not counted.
     told: u64,
-    /// How much had been noted for checkpoints when the telling began.
+    /// How much was noted for checkpoints in the oldest state that was told of: when the telling began, or what was
+    /// restored since.
     since: u64,
+    /// How many changes had been told in that state.
+    base: u64,
 }
 
 impl Changes {
@@ -81,7 +84,7 @@ impl Changes {
     /// Takes back all that was told since there were `told`; returns from which word of the undo log on that covers
     /// everything.
     pub(crate) fn take_back(&mut self, told: Option<u64>) -> u64 {
-        let keep = told.unwrap_or(0);
+        let keep = told.unwrap_or(self.base);
         let count = (self.told - keep) as usize;
         self.told = keep;
         match self.list.len().checked_sub(count) {
@@ -92,6 +95,13 @@ impl Changes {
             _ => self.list.push(Change::Undone { count }),
         }
         if told.is_some() { 0 } else { self.since }
+    }
+
+    /// A state with less noted was told of, piece by piece.
+    pub(crate) fn reached(&mut self, words: u64) {
+        if words < self.since {
+            (self.since, self.base) = (words, self.told);
+        }
     }
 }
 

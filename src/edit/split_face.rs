@@ -106,11 +106,12 @@ impl Mesh {
         self.link(before_b, n ^ 1);
         self.link(n ^ 1, a);
         self.set_face(n ^ 1, f);
+        // The first corner stays if its vertex does.
+        let first = self.face_halfedge[f as usize];
         let mut h = b;
         loop {
             self.set_face(h, g);
-            if self.face_halfedge[f as usize] == h {
-                // The first corner stays if its vertex does.
+            if h == first {
                 self.set_face_halfedge(f, if h == b { n ^ 1 } else { a });
             }
             h = self.next[h as usize];

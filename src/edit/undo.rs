@@ -155,6 +155,9 @@ impl Mesh {
                 self.put_back(word, &mut undo.positions, silent);
             }
         }
+        if let Some(changes) = &mut self.changes {
+            changes.reached(mark.words);
+        }
         self.undo = Some(undo);
         Ok(())
     }
