@@ -20,7 +20,7 @@ mod shapes;
 
 use cpu_time::ThreadTime;
 use meshwright::glam::DVec3;
-use meshwright::{EdgeKey, FaceKey, IndexedMesh, Mesh, Rule, VertexKey};
+use meshwright::{EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, Rule, VertexKey};
 use shapes::Noise;
 use std::error::Error;
 use std::hint::black_box;
@@ -71,7 +71,12 @@ fn add_columns(mesh: &mut Mesh, kinds: &str) {
 /// One operation at an edge; whether it was done.
 #[inline]
 fn operate(mesh: &mut Mesh, op: &str, e: EdgeKey) -> bool {
-    let h = mesh.edge_halfedge(e);
+    operate_at(mesh, op, e, mesh.edge_halfedge(e))
+}
+
+/// One operation at an edge, given by one of its half-edges too.
+#[inline]
+fn operate_at(mesh: &mut Mesh, op: &str, e: EdgeKey, h: HalfedgeKey) -> bool {
     match op {
         "flip" => mesh.flip_edge(e).is_ok(),
         "split" => {
@@ -238,25 +243,30 @@ fn time_mix(columns: &str) {
     }
 }
 
-/// Flips, splits and collapses at the same 100,000 edges as the peers: the n-th is `n * 7919 mod edges` in the order in
-/// which faces first use them.
+/// Flips, splits and collapses at the same 100,000 half-edges as the peers: see `picks` in `benches/peers/shape.hpp`.
 fn time_peers(pool: &IndexedMesh, repeats: usize) {
-    let mesh = shapes::mesh(pool);
-    let edges: Vec<EdgeKey> = mesh.edges().collect();
-    let pick: Vec<EdgeKey> = (0..100_000).map(|n| edges[n * 7919 % edges.len()]).collect();
+    let fresh = shapes::mesh(pool);
+    let vertices = fresh.numbering().vertices;
+    let pick = |n: usize| {
+        let corners = &pool.polygons()[n * 7919 % pool.face_count()];
+        let [a, b] = [n, n + 1].map(|i| vertices[corners[i % 3] as usize]);
+        fresh.find_halfedge(a, b).expect("a face's edge")
+    };
+    let picked: Vec<HalfedgeKey> = (0..100_000).map(pick).collect();
     for op in ["flip", "split", "collapse"] {
-        let (mut best, mut done) = (f64::MAX, 0);
+        let (mut times, mut done) = (Vec::new(), 0);
         for _ in 0..repeats.max(1) {
-            let mut mesh = mesh.clone();
+            let mut mesh = fresh.clone();
             done = 0;
             let start = ThreadTime::now();
-            for &e in &pick {
-                done += u32::from(mesh.contains_edge(e) && operate(&mut mesh, op, e));
+            for &h in &picked {
+                done += u32::from(mesh.get_edge(h).is_some_and(|e| operate_at(&mut mesh, op, e, h)));
             }
-            best = best.min(start.elapsed().as_nanos() as f64);
+            times.push(start.elapsed().as_nanos() as f64 / picked.len() as f64);
             black_box(&mesh);
         }
-        println!("meshwright\t{op}\t{:.3}\tns/edge", best / pick.len() as f64);
-        println!("meshwright\t{op}_done\t{done}\tedges");
+        times.sort_by(f64::total_cmp);
+        println!("meshwright\t{op}\t{:.3}\tns/edge", times[0]);
+        println!("meshwright\t{op}_done\t{done}\tedits");
     }
 }
