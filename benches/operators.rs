@@ -3,7 +3,7 @@
 //! `cargo bench --bench operators` times a mix of all operators on 100,000 faces, in operations a second, and flips,
 //! splits and collapses one by one; `-- --columns` the same with a column of each kind.
 //!
-//! `-- --callgrind OP FACES [COUNT] [COLUMNS]` builds a sphere of at least so many triangles and does `COUNT` (1,000)
+//! `-- --callgrind OP FACES [COUNT] [COLUMNS]` builds a grid of about so many triangles and does `COUNT` (1,000)
 //! operations spread over it: OP is flip, split or collapse, COLUMNS a list of vertex, corner, edge and face. The
 //! instructions of a run with 0 operations, subtracted, leave those of the operations. For the table of all:
 //!
@@ -20,7 +20,7 @@ mod shapes;
 
 use cpu_time::ThreadTime;
 use meshwright::glam::DVec3;
-use meshwright::{EdgeKey, FaceKey, IndexedMesh, Mesh, Rule, VertexKey};
+use meshwright::{EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, Rule, VertexKey};
 use shapes::Noise;
 use std::error::Error;
 use std::hint::black_box;
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     match words[..] {
         ["--callgrind", op, faces, ref rest @ ..] => {
             let count = rest.first().map_or(Ok(1000), |n| n.parse())?;
-            let mut mesh = sphere(faces.parse()?);
+            let mut mesh = sheet(faces.parse()?);
             add_columns(&mut mesh, rest.get(1).copied().unwrap_or_default());
             spread(&mut mesh, op, count)
         }
@@ -50,10 +50,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// A sphere of at least so many triangles.
-fn sphere(faces: usize) -> Mesh {
-    let levels = (0..10).find(|l| 20 << (2 * l) >= faces).unwrap_or(10);
-    shapes::mesh(&shapes::icosphere(levels))
+/// A triangle grid of about so many faces.
+fn sheet(faces: usize) -> Mesh {
+    shapes::mesh(&shapes::grid((faces as f64 / 2.0).sqrt().ceil() as u32))
 }
 
 fn add_columns(mesh: &mut Mesh, kinds: &str) {
@@ -71,7 +70,12 @@ fn add_columns(mesh: &mut Mesh, kinds: &str) {
 /// One operation at an edge; whether it was done.
 #[inline]
 fn operate(mesh: &mut Mesh, op: &str, e: EdgeKey) -> bool {
-    let h = mesh.edge_halfedge(e);
+    operate_at(mesh, op, e, mesh.edge_halfedge(e))
+}
+
+/// One operation at an edge, given by one of its half-edges too.
+#[inline]
+fn operate_at(mesh: &mut Mesh, op: &str, e: EdgeKey, h: HalfedgeKey) -> bool {
     match op {
         "flip" => mesh.flip_edge(e).is_ok(),
         "split" => {
@@ -87,15 +91,19 @@ fn spread(mesh: &mut Mesh, op: &str, count: usize) -> Result<(), Box<dyn Error>>
     if !["flip", "split", "collapse"].contains(&op) {
         return Err(format!("no operation {op}: flip, split or collapse").into());
     }
-    let all: Vec<EdgeKey> = mesh.edges().collect();
-    let step = all.len() / 1000;
-    let edges: Vec<EdgeKey> = all.into_iter().step_by(step.max(1)).take(1000).collect();
+    let is_inside = |h: HalfedgeKey| !mesh.is_boundary_vertex(mesh.origin(h));
+    let all: Vec<EdgeKey> = mesh
+        .edges()
+        .filter(|&e| [mesh.edge_halfedge(e), mesh.twin(mesh.edge_halfedge(e))].into_iter().all(is_inside))
+        .collect();
+    let edges: Vec<EdgeKey> = (0..1000).map(|i| all[i * all.len() / 1000]).collect();
     let mut done = 0;
     for &e in &edges[..count.min(edges.len())] {
-        done += usize::from(operate(mesh, op, e));
+        done += usize::from(mesh.contains_edge(e) && operate(mesh, op, e));
     }
-    if black_box(done) != count {
-        return Err(format!("{done} of {count} operations were done").into());
+    // On a small mesh some places touch.
+    if black_box(done) < count * 95 / 100 {
+        return Err(format!("only {done} of {count} operations were done").into());
     }
     Ok(())
 }
@@ -204,9 +212,7 @@ fn mixed(mesh: &mut Mesh, picks: &mut Picks, kind: usize) -> bool {
 }
 
 fn time_mix(columns: &str) {
-    // An icosphere has 81,920 or 327,680 faces; a grid has what is asked for.
-    let pool = shapes::grid(224);
-    let mut mesh = shapes::mesh(&pool);
+    let mut mesh = sheet(100_000);
     add_columns(&mut mesh, columns);
     println!("{} faces, columns: {}", mesh.face_count(), if columns.is_empty() { "none" } else { columns });
     let (mut tries, mut seconds) = (0u32, 0.0);
@@ -238,25 +244,30 @@ fn time_mix(columns: &str) {
     }
 }
 
-/// Flips, splits and collapses at the same 100,000 edges as the peers: the n-th is `n * 7919 mod edges` in the order in
-/// which faces first use them.
+/// Flips, splits and collapses at the same 100,000 half-edges as the peers: see `picks` in `benches/peers/shape.hpp`.
 fn time_peers(pool: &IndexedMesh, repeats: usize) {
-    let mesh = shapes::mesh(pool);
-    let edges: Vec<EdgeKey> = mesh.edges().collect();
-    let pick: Vec<EdgeKey> = (0..100_000).map(|n| edges[n * 7919 % edges.len()]).collect();
+    let fresh = shapes::mesh(pool);
+    let vertices = fresh.numbering().vertices;
+    let pick = |n: usize| {
+        let corners = &pool.polygons()[n * 7919 % pool.face_count()];
+        let [a, b] = [n, n + 1].map(|i| vertices[corners[i % 3] as usize]);
+        fresh.find_halfedge(a, b).expect("a face's edge")
+    };
+    let picked: Vec<HalfedgeKey> = (0..100_000).map(pick).collect();
     for op in ["flip", "split", "collapse"] {
-        let (mut best, mut done) = (f64::MAX, 0);
+        let (mut times, mut done) = (Vec::new(), 0);
         for _ in 0..repeats.max(1) {
-            let mut mesh = mesh.clone();
+            let mut mesh = fresh.clone();
             done = 0;
             let start = ThreadTime::now();
-            for &e in &pick {
-                done += u32::from(mesh.contains_edge(e) && operate(&mut mesh, op, e));
+            for &h in &picked {
+                done += u32::from(mesh.get_edge(h).is_some_and(|e| operate_at(&mut mesh, op, e, h)));
             }
-            best = best.min(start.elapsed().as_nanos() as f64);
+            times.push(start.elapsed().as_nanos() as f64 / picked.len() as f64);
             black_box(&mesh);
         }
-        println!("meshwright\t{op}\t{:.3}\tns/edge", best / pick.len() as f64);
-        println!("meshwright\t{op}_done\t{done}\tedges");
+        times.sort_by(f64::total_cmp);
+        println!("meshwright\t{op}\t{:.3}\tns/edge", times[0]);
+        println!("meshwright\t{op}_done\t{done}\tedits");
     }
 }

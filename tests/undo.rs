@@ -295,35 +295,6 @@ fn computed_normals_are_taken_back_if_the_mesh_carried_some() {
     assert!(state(&mesh) == before);
 }
 
-/// Bytes noted for each of many operators, and for how many.
-fn cost(of: &mut Mesh, mut operator: impl FnMut(&mut Mesh, EdgeKey) -> bool) -> f64 {
-    let edges: Vec<_> = of.edges().collect();
-    of.checkpoint();
-    let mut done = 0;
-    for e in edges.into_iter().step_by(7) {
-        done += u32::from(of.contains_edge(e) && operator(of, e));
-    }
-    assert!(done > 500);
-    // The vectors double: what they hold lies between half of that and all of it.
-    let held = of.checkpoint_bytes() as f64 / f64::from(done);
-    of.forget_checkpoints();
-    held
-}
-
-#[test]
-fn the_memory_that_the_documentation_states_is_right() {
-    let mut mesh = mesh(&icosphere(5));
-    let flip = cost(&mut mesh, |m, e| m.flip_edge(e).is_ok());
-    let split = cost(&mut mesh, |m, e| m.split_edge_and_faces(e, DVec3::ONE).is_ok());
-    let collapse = cost(&mut mesh, |m, e| m.collapse_into_target(m.edge_halfedge(e)).is_ok());
-    eprintln!("bytes held: flip {flip:.0}, split {split:.0}, collapse {collapse:.0}");
-    for (name, held, stated) in
-        [("flip", flip, 250.0), ("split", split, 500.0), ("collapse", collapse, 600.0)]
-    {
-        assert!((0.8 * stated..2.2 * stated).contains(&held), "{name}: {held} bytes, stated are {stated}");
-    }
-}
-
 // The record of edits.
 
 /// What is live, followed through changes.
