@@ -188,6 +188,28 @@ impl Mesh {
         Ok(())
     }
 
+    /// The one door for bulk writes of positions: a whole column by slot, all or nothing. Entries of dead slots mean
+    /// nothing.
+    pub(crate) fn replace_positions(&mut self, new: Vec<DVec3>) -> Result<(), SetError> {
+        self.check_column(&new)?;
+        self.positions = new;
+        Ok(())
+    }
+
+    /// The one door for bulk writes of carried normals, as [`replace_positions`](Self::replace_positions).
+    pub(crate) fn replace_normals(&mut self, new: Vec<DVec3>) -> Result<(), SetError> {
+        self.check_column(&new)?;
+        self.normals = Some(new);
+        Ok(())
+    }
+
+    /// Refuses a column with a value that is not finite, by the first vertex in storage order.
+    fn check_column(&self, column: &[DVec3]) -> Result<(), SetError> {
+        debug_assert_eq!(column.len(), self.vertices.slot_count());
+        let bad = |&v: &u32| !column.get(v as usize).is_some_and(|p| p.is_finite());
+        self.vertices.live().find(bad).map_or(Ok(()), |v| Err(SetError::NonFinite(self.vertices.key(v))))
+    }
+
     read! {
         /// The next half-edge around the face, or along the boundary loop.
         next, get_next(self, h: HalfedgeKey => halfedge_slot) -> HalfedgeKey { self.halfedge_key(self.next[h as usize]) }

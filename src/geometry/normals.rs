@@ -118,7 +118,8 @@ impl Mesh {
         for (slot, normal) in self.vertices.in_user_order().into_iter().zip(computed) {
             column[slot as usize] = normal;
         }
-        self.normals = Some(column);
+        // Directions are finite, so this cannot be refused.
+        let _ = self.replace_normals(column);
     }
 
     /// Where a half-edge starts.
