@@ -52,7 +52,10 @@ fn examples() -> Vec<(&'static str, IndexedMesh)> {
         ("two", shapes::both(&shapes::cube(), &shapes::grid(2))),
         ("sphere", shapes::icosphere(1)),
         ("pentagon", {
-            let corner = |i: u32| DVec3::from((f64::from(i) * 1.256637).sin_cos().into()).with_z(0.0);
+            let corner = |i: u32| {
+                let (y, x) = (f64::from(i) * 1.256637).sin_cos();
+                dvec3(x, y, 0.0)
+            };
             shapes::pool((0..5).map(corner).collect(), vec![(0..5).collect()])
         }),
     ]
@@ -461,28 +464,19 @@ fn options_a_scheme_has_no_rule_for_and_dead_keys_are_refused() {
     let other = built(&shapes::torus(9, 9));
     let (f, e, v) = (other.faces().last(), other.edges().last(), other.vertices().last());
     let (f, e, v) = (f.expect("there"), e.expect("there"), v.expect("there"));
-    let refuse = |options: SubdivideOptions<'_>| mesh.subdivide(options).expect_err("refused");
-    let default = SubdivideOptions::default;
-    assert_eq!(refuse(SubdivideOptions { only: Some(&[f]), ..default() }), SubdivideError::MissingFace(f));
+    macro_rules! refuse {
+        ($($field:tt)*) => {
+            mesh.subdivide(SubdivideOptions { $($field)*, ..Default::default() }).expect_err("refused")
+        };
+    }
+    assert_eq!(refuse!(only: Some(&[f])), SubdivideError::MissingFace(f));
     let loop_ = Scheme::Loop;
-    assert_eq!(
-        refuse(SubdivideOptions { scheme: loop_, creases: &[e], ..default() }),
-        SubdivideError::MissingEdge(e)
-    );
-    assert_eq!(
-        refuse(SubdivideOptions { scheme: loop_, corners: &[v], ..default() }),
-        SubdivideError::MissingVertex(v)
-    );
-    assert_eq!(
-        refuse(SubdivideOptions { scheme: loop_, only: Some(&[]), ..default() }),
-        SubdivideError::NoSelection(loop_)
-    );
-    assert_eq!(
-        refuse(SubdivideOptions { scheme: Scheme::Sqrt3, creases: &[e], ..default() }),
-        SubdivideError::NoCreases(Scheme::Sqrt3)
-    );
+    assert_eq!(refuse!(scheme: loop_, creases: &[e]), SubdivideError::MissingEdge(e));
+    assert_eq!(refuse!(scheme: loop_, corners: &[v]), SubdivideError::MissingVertex(v));
+    assert_eq!(refuse!(scheme: loop_, only: Some(&[])), SubdivideError::NoSelection(loop_));
+    assert_eq!(refuse!(scheme: Scheme::Sqrt3, creases: &[e]), SubdivideError::NoCreases(Scheme::Sqrt3));
     for angle in [-1.0, 181.0, f64::NAN] {
-        let refused = refuse(SubdivideOptions { scheme: loop_, crease_degrees: Some(angle), ..default() });
+        let refused = refuse!(scheme: loop_, crease_degrees: Some(angle));
         assert!(matches!(refused, SubdivideError::BadAngle(_)));
     }
 }

@@ -36,8 +36,9 @@ pub enum Boundary {
     /// They stay.
     #[default]
     Fixed,
-    /// They move towards the mean of their two neighbours on the boundary, but only along the line through those two:
-    /// they even out along the boundary, and its corners stay.
+    /// They move along the boundary edges beside them, towards the middle between their two neighbours as measured
+    /// along the boundary: each stays on the boundary as it was before the step, and evenly spaced ones stay where they
+    /// are. A sharp corner of the boundary that is to keep its place must be locked.
     Slide,
     /// They move as all others.
     Free,
@@ -163,7 +164,7 @@ impl Mesh {
 enum Rule {
     Stay,
     Free,
-    /// Along the line through the neighbours on the boundary: the vertex slots before and after.
+    /// Along the boundary: the vertex slots before and after.
     Slide([u32; 2]),
 }
 
@@ -222,8 +223,13 @@ impl Rules {
                 }
                 Rule::Slide([a, b]) => {
                     let [a, b] = [*a, *b].map(|v| before[v as usize]);
-                    let along = super::direction(b - a);
-                    *p += along * ((a + b) * 0.5 - *p).dot(along) * factor;
+                    let (behind, ahead) = (p.distance(a), p.distance(b));
+                    let by = (ahead - behind) * 0.5 * factor;
+                    let (to, length) = if by > 0.0 { (b, ahead) } else { (a, behind) };
+                    // Half an edge at most, or neighbours could pass each other.
+                    if by != 0.0 && length > 0.0 {
+                        *p += (to - *p) * (by.abs() / length).min(0.5);
+                    }
                 }
             }
         }

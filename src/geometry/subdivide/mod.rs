@@ -137,6 +137,12 @@ impl Meter<'_, '_> {
         if done.is_multiple_of(1 << 19) { self.report(done, of) } else { Ok(()) }
     }
 
+    /// Reports that a part of the level is done; what follows counts within the rest.
+    pub(super) fn advance(&mut self, done: usize, of: usize) -> Result<(), Cancelled> {
+        self.from += (self.to - self.from) * done as f64 / of as f64;
+        self.report(0, 1)
+    }
+
     #[cold]
     fn report(&mut self, done: usize, of: usize) -> Result<(), Cancelled> {
         let share = done as f64 / of.max(1) as f64;

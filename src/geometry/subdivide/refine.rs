@@ -81,7 +81,7 @@ impl Refined {
             Scheme::CatmullClark => masks::catmull_clark(dense),
             _ => masks::midpoint(dense),
         };
-        meter.report(1, 4)?;
+        meter.advance(1, 4)?;
         let faces = dense.polygons.len();
         let centers = positions.len() - dense.positions.len() - dense.edges;
         let mut births = mem::take(&mut self.vertex_birth);

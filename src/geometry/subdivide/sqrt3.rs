@@ -26,10 +26,10 @@ pub(super) fn subdivide(
         let [from, to] = [level, level + 1].map(|l| 0.9 * 3f64.powi(l as i32 - levels as i32));
         let mut meter = Meter { control, from, to };
         let step = Step::new(&dense, level % 2 == 1);
-        meter.report(1, 4)?;
+        meter.advance(1, 4)?;
         let (polygons, next) = step.faces(&mut meter)?;
         maps = if level == 0 && maps.faces.is_identity() { next } else { followed(&maps, &next) };
-        meter.report(3, 4)?;
+        meter.advance(3, 4)?;
         let positions = step.positions();
         dense = Dense::matched(positions, polygons);
     }
