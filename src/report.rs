@@ -366,6 +366,12 @@ impl Relation {
         }
     }
 
+    /// Every new element is a part of one old one, below `old_count`. O(elements).
+    pub(crate) fn from_parents(old_count: usize, parents: Vec<u32>) -> Self {
+        let forward = Lists::group(old_count, parents.iter().copied().zip(0..));
+        Self { forward, backward: Lists { starts: Vec::new(), items: parents } }
+    }
+
     /// For each new element, in order, its old ones: ascending, without repeats, below `old_count`. O(pairs).
     pub(crate) fn from_old_of(old_count: usize, starts: Vec<u32>, items: Vec<u32>) -> Self {
         let count = starts.len().saturating_sub(1);

@@ -1,6 +1,6 @@
 //! The form a level works on: faces, and for each corner its edge.
 
-use super::{Scheme, SubdivideError};
+use super::SubdivideError;
 use crate::geometry::triangulate::Triangulator;
 use crate::matching::{Chains, NONE, Pairing};
 use crate::{EdgeKey, IndexedMesh, Mesh, Polygons, VertexKey};
@@ -21,7 +21,7 @@ pub(super) struct Dense {
     pub(super) corners: Vec<bool>,
 }
 
-/// A mesh made ready for a scheme.
+/// A mesh made ready for a scheme: in triangles, if it needs them.
 pub(super) struct Prepared {
     pub(super) dense: Dense,
     /// For each face the one it was cut from; `None` if none was cut.
@@ -31,9 +31,8 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    pub(super) fn new(mesh: &Mesh, scheme: Scheme) -> Result<Self, SubdivideError> {
+    pub(super) fn new(mesh: &Mesh, needs_triangles: bool) -> Result<Self, SubdivideError> {
         let dense = Dense::of(mesh);
-        let needs_triangles = matches!(scheme, Scheme::Loop | Scheme::Sqrt3);
         if !needs_triangles || dense.polygons.iter().all(|f| f.len() == 3) {
             return Ok(Self { dense, face_source: None, triangulated: None });
         }

@@ -11,8 +11,8 @@ mod sqrt3;
 
 use super::unit_scale;
 use super::weld::BadAngle;
-use crate::build::assemble;
-use crate::report::{Attribute, Maps, Outcome, Relation, Report, Step, StepSummary};
+use crate::build::lay_out;
+use crate::report::{Attribute, Maps, Outcome, Report, Step, StepSummary};
 use crate::soup::MAX_ELEMENTS;
 use crate::{BuildError, Cancelled, Control, EdgeKey, FaceKey, IndexedMesh, Mesh, VertexKey};
 use dense::{Dense, Prepared};
@@ -188,8 +188,9 @@ impl Mesh {
             _ => {}
         }
         control.report("subdivide", 0.0)?;
-        let prepared = Prepared::new(self, scheme)?;
         let levels = if self.face_count() == 0 { 0 } else { levels };
+        let needs_triangles = levels > 0 && matches!(scheme, Scheme::Loop | Scheme::Sqrt3);
+        let prepared = Prepared::new(self, needs_triangles)?;
         let limit = max_faces.min(MAX_ELEMENTS) as u64;
         let mut report = Report::default();
         if let Some(cut) = prepared.triangulated {
@@ -291,19 +292,15 @@ fn foresee(dense: &Dense, scheme: Scheme, levels: u32, limit: u64) -> Result<(),
     Ok(())
 }
 
-/// The mesh of a level.
+/// The mesh of the last level. Every scheme makes a manifold of a manifold, so what `Mesh::build` checks is not asked
+/// again: new edges end in a vertex of their own edge or face, so no two of them join the same vertices.
 fn build(dense: Dense) -> Result<Mesh, SubdivideError> {
     let (positions, polygons, pairing) = dense.into_parts();
     let pool = IndexedMesh::trusted(positions, polygons, None);
-    match assemble(&pool, &pairing) {
+    match lay_out(&pool, &pairing) {
         Some(mesh) => Ok(mesh),
         None => Mesh::build(&pool).map_err(SubdivideError::Bug),
     }
-}
-
-/// The relation of faces cut in order: `parent[new]` is the old face, ascending.
-fn parts_of(old_faces: usize, parent: &[u32]) -> Relation {
-    Relation::from_pairs(old_faces, parent.len(), parent.iter().copied().zip(0..))
 }
 
 /// Followed by another, both by construction of fitting size.

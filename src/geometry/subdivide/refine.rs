@@ -2,7 +2,7 @@
 //! of the coarser.
 
 use super::dense::Dense;
-use super::{Meter, Scheme, SubdivideError, masks, parts_of};
+use super::{Meter, Scheme, SubdivideError, masks};
 use crate::matching::NONE;
 use crate::report::{Maps, Relation};
 use crate::{Mesh, Polygons};
@@ -27,8 +27,9 @@ pub(super) struct Refined {
     parent: Vec<u32>,
     /// The ends of the old edges.
     ends: Vec<[u32; 2]>,
-    /// The corners of the old faces.
-    old: Polygons,
+    /// The corners of the old faces, once they are no longer those of `dense`.
+    old: Option<Polygons>,
+    old_faces: usize,
     old_vertices: usize,
 }
 
@@ -54,14 +55,14 @@ impl Refined {
                 c += 1;
             }
         }
-        let old =
-            if face_source.is_some() { mesh.to_indexed().into_parts().1 } else { dense.polygons.clone() };
+        let old = face_source.is_some().then(|| mesh.to_indexed().into_parts().1);
         Self {
             vertex_birth: (0..vertices as u32).map(Birth::Vertex).collect(),
             edge_birth,
             parent: face_source.unwrap_or_else(|| (0..faces as u32).collect()),
             ends,
             old,
+            old_faces: mesh.face_count(),
             old_vertices: vertices,
             dense,
         }
@@ -123,7 +124,9 @@ impl Refined {
         let open = dense.open.iter().map(|&e| split.base[e as usize]).flat_map(|e| [e, e + 1]).collect();
         let corners = mem::take(&mut self.dense.corners);
         let Split { polygons, use_of, edges, .. } = split;
-        self.dense = Dense { positions, polygons, use_of, edges, open, creases, corners };
+        let finer = Dense { positions, polygons, use_of, edges, open, creases, corners };
+        let spent = mem::replace(&mut self.dense, finer);
+        self.old.get_or_insert(spent.polygons);
         self.vertex_birth = births;
         self.parent = parent;
         Ok(())
@@ -131,6 +134,12 @@ impl Refined {
 
     /// The finest level, and where its elements come from.
     pub(super) fn finish(self) -> (Dense, Maps) {
+        if self.vertex_birth.len() == self.old_vertices {
+            // No level.
+            let faces = Relation::from_parents(self.old_faces, self.parent);
+            return (self.dense, Maps { vertices: Relation::identity(self.old_vertices), faces });
+        }
+        let old = self.old.unwrap_or_default();
         let count = self.vertex_birth.len();
         let mut starts = Vec::with_capacity(count + 1);
         let mut items: Vec<u32> = Vec::with_capacity(2 * count);
@@ -142,7 +151,7 @@ impl Refined {
                 Birth::Edge(e) => items.extend(self.ends[e as usize]),
                 Birth::Face(f) => {
                     sorted.clear();
-                    sorted.extend_from_slice(&self.old[f as usize]);
+                    sorted.extend_from_slice(&old[f as usize]);
                     sorted.sort_unstable();
                     items.extend(&sorted);
                 }
@@ -150,7 +159,7 @@ impl Refined {
             starts.push(items.len() as u32);
         }
         let vertices = Relation::from_old_of(self.old_vertices, starts, items);
-        let maps = Maps { vertices, faces: parts_of(self.old.len(), &self.parent) };
+        let maps = Maps { vertices, faces: Relation::from_parents(self.old_faces, self.parent) };
         (self.dense, maps)
     }
 }

@@ -2,7 +2,7 @@
 //! level.
 
 use super::dense::Dense;
-use super::{Meter, SubdivideError, followed, parts_of};
+use super::{Meter, SubdivideError, followed};
 use crate::matching::NONE;
 use crate::report::{Maps, Relation};
 use crate::{Control, Mesh, Polygons};
@@ -17,9 +17,10 @@ pub(super) fn subdivide(
 ) -> Result<(Dense, Maps), SubdivideError> {
     let vertices = dense.positions.len();
     let mut maps = match face_source {
-        Some(source) => {
-            Maps { vertices: Relation::identity(vertices), faces: parts_of(mesh.face_count(), &source) }
-        }
+        Some(source) => Maps {
+            vertices: Relation::identity(vertices),
+            faces: Relation::from_parents(mesh.face_count(), source),
+        },
         None => Maps::identity(vertices, dense.polygons.len()),
     };
     for level in 0..levels {
