@@ -139,13 +139,16 @@ impl Mesh {
         let mut now: Vec<DVec3> = self.positions.iter().map(|&p| p * scale).collect();
         let mut sums = vec![(DVec3::ZERO, 0.0); now.len()];
         let apexes = matches!(method, SmoothMethod::Cotangent).then(|| Apexes::new(self));
-        for i in 0..iterations {
-            control.report("smooth", f64::from(i) / f64::from(iterations))?;
-            let second = if let SmoothMethod::Taubin { mu } = method { Some(mu) } else { None };
+        let second = if let SmoothMethod::Taubin { mu } = method { Some(mu) } else { None };
+        let steps = f64::from(iterations) * if second.is_some() { 2.0 } else { 1.0 };
+        let mut done = 0.0;
+        for _ in 0..iterations {
             for factor in [Some(lambda), second].into_iter().flatten() {
                 sums.fill((DVec3::ZERO, 0.0));
-                rules.sum(self, &now, apexes.as_ref(), &mut sums);
+                let mut tick = |share: f64| control.report("smooth", (done + share) / steps);
+                sum(self, &now, apexes.as_ref(), &mut sums, &mut tick)?;
                 rules.step(&mut now, &sums, factor);
+                done += 1.0;
             }
         }
         let moves = |v: usize| rules.of[v] != Rule::Stay;
@@ -197,18 +200,6 @@ impl Rules {
         Ok(Self { of, slides: boundary == Boundary::Slide })
     }
 
-    /// Adds up each vertex's neighbours and their weights, edge by edge.
-    fn sum(&self, mesh: &Mesh, at: &[DVec3], apexes: Option<&Apexes>, sums: &mut [(DVec3, f64)]) {
-        for e in mesh.edges.live() {
-            let [a, b] = [2 * e, 2 * e + 1].map(|h| mesh.origin[h as usize] as usize);
-            let weight = apexes.map_or(1.0, |apexes| apexes.weight(mesh, at, e));
-            for (a, b) in [(a, b), (b, a)] {
-                sums[a].0 += at[b] * weight;
-                sums[a].1 += weight;
-            }
-        }
-    }
-
     fn step(&self, now: &mut [DVec3], sums: &[(DVec3, f64)], factor: f64) {
         let before = if self.slides { now.to_vec() } else { Vec::new() };
         for ((p, &(sum, weight)), rule) in now.iter_mut().zip(sums).zip(&self.of) {
@@ -234,4 +225,26 @@ impl Rules {
             }
         }
     }
+}
+
+/// Adds up each vertex's neighbours and their weights, edge by edge.
+fn sum(
+    mesh: &Mesh,
+    at: &[DVec3],
+    apexes: Option<&Apexes>,
+    sums: &mut [(DVec3, f64)],
+    tick: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
+) -> Result<(), Cancelled> {
+    for (i, e) in mesh.edges.live().enumerate() {
+        if i.is_multiple_of(1 << 19) {
+            tick(i as f64 / mesh.edge_count() as f64)?;
+        }
+        let [a, b] = [2 * e, 2 * e + 1].map(|h| mesh.origin[h as usize] as usize);
+        let weight = apexes.map_or(1.0, |apexes| apexes.weight(mesh, at, e));
+        for (a, b) in [(a, b), (b, a)] {
+            sums[a].0 += at[b] * weight;
+            sums[a].1 += weight;
+        }
+    }
+    Ok(())
 }

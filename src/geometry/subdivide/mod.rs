@@ -260,7 +260,7 @@ fn foresee(dense: &Dense, scheme: Scheme, levels: u32, limit: u64) -> Result<(),
             Scheme::Sqrt3 => {
                 let cut = if level.is_multiple_of(2) { open } else { 0 };
                 vertices += faces + cut;
-                faces = 3 * faces;
+                faces *= 3;
                 open += 2 * cut;
                 corners = 3 * faces;
                 edges = (corners + open) / 2;
