@@ -246,8 +246,8 @@ impl Mesh {
     /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     /// # let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
     /// mesh.transform_matrix(&DMat4::from_translation(DVec3::X))?;
-    /// let perspective = DMat4::perspective_rh(1.0, 1.0, 0.1, 10.0);
-    /// assert!(matches!(mesh.transform_matrix(&perspective), Err(TransformError::NotAffine(_))));
+    /// let half = DMat4::IDENTITY * 0.5;
+    /// assert_eq!(mesh.transform_matrix(&half), Err(TransformError::NotAffine([0.0, 0.0, 0.0, 0.5])));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn transform_matrix(&mut self, matrix: &DMat4) -> Result<(), TransformError> {
