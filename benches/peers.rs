@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let repeats = value("--repeats").map_or(Ok(5), |r| r.parse())?;
     match value("--time") {
-        Some(file) => time(&from_raw(&fs::read(file)?)?, repeats),
+        Some(file) => time(&shapes::from_raw(&fs::read(file)?)?, repeats),
         None => time(&shapes::icosphere(6), repeats),
     }
     Ok(())
@@ -42,19 +42,6 @@ fn to_raw(pool: &IndexedMesh) -> Vec<u8> {
     raw.extend(pool.positions().iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
     raw.extend(pool.polygons().corners().iter().flat_map(|c| c.to_le_bytes()));
     raw
-}
-
-fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn Error>> {
-    let word = |i: usize| raw[8 * i..8 * i + 8].try_into().map(u64::from_le_bytes);
-    let (vertices, triangles) = (word(0)? as usize, word(1)? as usize);
-    let (points, indices) = raw[16..].split_at(24 * vertices);
-    let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
-    let points =
-        points.chunks_exact(24).map(|p| DVec3::new(number(&p[..8]), number(&p[8..16]), number(&p[16..])));
-    let index = |b: &[u8]| u32::from_le_bytes(b.try_into().expect("four bytes"));
-    let corners = indices.chunks_exact(12).map(|t| [index(&t[..4]), index(&t[4..8]), index(&t[8..])]);
-    let corners: Vec<[u32; 3]> = corners.take(triangles).collect();
-    Ok(IndexedMesh::from_triangles(points.collect(), &corners)?)
 }
 
 /// The least processor time of several runs, as the peers measure it.

@@ -30,6 +30,44 @@ impl<K: Key> Arena<K> {
         Self { slots, versions, ranks: Vec::new() }
     }
 
+    /// A new element: its slot, which is the next fresh one or one that was freed.
+    pub(crate) fn insert(&mut self) -> u32 {
+        let ffi = self.slots.insert(()).data().as_ffi();
+        let (slot, version) = (ffi as u32, (ffi >> 32) as u32);
+        if slot as usize == self.versions.len() {
+            self.versions.push(version);
+            if !self.ranks.is_empty() {
+                // After all that the user gave.
+                self.ranks.push(u32::MAX);
+            }
+        } else {
+            self.versions[slot as usize] = version;
+            if let Some(rank) = self.ranks.get_mut(slot as usize) {
+                *rank = u32::MAX;
+            }
+        }
+        slot
+    }
+
+    /// Frees a live slot; its key is stale from now on.
+    pub(crate) fn remove(&mut self, slot: u32) {
+        self.slots.remove(self.key(slot));
+        self.versions[slot as usize] = 0;
+    }
+
+    /// Takes a live slot out of use without freeing it, so that its key can be [put back](Self::reattach); returns its
+    /// version.
+    pub(crate) fn detach(&mut self, slot: u32) -> u32 {
+        self.slots.detach(self.key(slot));
+        std::mem::take(&mut self.versions[slot as usize])
+    }
+
+    /// Puts a detached slot back into use under its old key.
+    pub(crate) fn reattach(&mut self, slot: u32, version: u32) {
+        self.versions[slot as usize] = version;
+        self.slots.reattach(self.key(slot), ());
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.slots.len()
     }
@@ -106,20 +144,6 @@ impl<K: Key> Arena<K> {
     pub(crate) fn set_ranks(&mut self, ranks: Vec<u32>) {
         self.ranks = ranks;
     }
-
-    /// Frees a slot as a removal will.
-    pub(crate) fn free(&mut self, slot: u32) {
-        self.slots.remove(self.key(slot));
-        self.versions[slot as usize] = 0;
-    }
-
-    /// Reuses a slot as an insertion will.
-    pub(crate) fn reuse(&mut self) -> K {
-        let key = self.slots.insert(());
-        let ffi = key.data().as_ffi();
-        self.versions[ffi as u32 as usize] = (ffi >> 32) as u32;
-        key
-    }
 }
 
 #[cfg(test)]
@@ -139,11 +163,22 @@ mod tests {
     fn a_stale_key_is_refused_after_its_slot_is_reused() {
         let mut arena = Arena::<VertexKey>::filled(2);
         let stale = arena.key(1);
-        arena.free(1);
+        arena.remove(1);
         assert_eq!(arena.slot(stale), None);
-        let fresh = arena.reuse();
-        assert_eq!(arena.slot(fresh), Some(1), "slotmap reuses the freed slot");
+        assert_eq!(arena.insert(), 1, "slotmap reuses the freed slot");
         assert_eq!(arena.slot(stale), None);
+        assert!(arena.is_sound());
+    }
+
+    #[test]
+    fn a_detached_slot_is_not_reused_and_comes_back_under_its_key() {
+        let mut arena = Arena::<VertexKey>::filled(2);
+        let key = arena.key(1);
+        let version = arena.detach(1);
+        assert_eq!((arena.slot(key), arena.len()), (None, 1));
+        assert_eq!(arena.insert(), 3);
+        arena.reattach(1, version);
+        assert_eq!(arena.slot(key), Some(1));
         assert!(arena.is_sound());
     }
 

@@ -67,8 +67,8 @@ impl Mesh {
     /// Builds the half-edge mesh of a vertex pool.
     ///
     /// The `i`-th of [`vertices`](Mesh::vertices) is vertex `i`, the `i`-th of [`faces`](Mesh::faces) is face `i`, and
-    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. Given normals come
-    /// along. O(corners).
+    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. All
+    /// attributes come along. O(corners).
     ///
     /// # Errors
     /// [`BuildError`] with every defect when the faces do not form an oriented manifold.
@@ -95,7 +95,7 @@ impl Mesh {
     }
 
     /// The vertex pool of the mesh, in the order of the input for what survived, with each face's first corner kept.
-    /// Carried normals come along. O(slots).
+    /// Carried attributes come along; user columns are [exported](Self::export_column) apart. O(slots).
     pub fn to_indexed(&self) -> IndexedMesh {
         let order = self.vertices.in_user_order();
         let mut number = vec![0u32; self.vertices.slot_count()];
@@ -107,8 +107,8 @@ impl Mesh {
             let corners = self.loop_slots(self.face_halfedge[f as usize]);
             polygons.push(corners.map(|h| number[self.origin[h as usize] as usize]));
         }
-        let pick = |column: &Vec<DVec3>| order.iter().map(|&v| column[v as usize]).collect();
-        IndexedMesh::trusted(pick(&self.positions), polygons, self.normals.as_ref().map(pick))
+        let positions = order.iter().map(|&v| self.positions[v as usize]).collect();
+        IndexedMesh::trusted(positions, polygons, None).carrying(self.ordered_attributes(&order))
     }
 }
 
@@ -150,7 +150,7 @@ pub(crate) fn lay_out(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
         vertex_halfedge: vec![NONE; pool.vertex_count() + 1],
         face_halfedge: Vec::with_capacity(pool.face_count() + 1),
         positions: shifted(pool.positions()),
-        normals: pool.normals().map(shifted),
+        ..Mesh::default()
     };
     // Slot 0 of every column is slotmap's sentinel, so input index i lives in slot i + 1.
     mesh.face_halfedge.push(NONE);
@@ -170,7 +170,11 @@ pub(crate) fn lay_out(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
             before = h;
         }
     }
-    link_boundary(&mut mesh, &pairing.open).then_some(mesh)
+    if !link_boundary(&mut mesh, &pairing.open) {
+        return None;
+    }
+    mesh.adopt(pool.attributes(), |corner| pairing.use_of[corner] + 2);
+    Some(mesh)
 }
 
 fn shifted(values: &[DVec3]) -> Vec<DVec3> {

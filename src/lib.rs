@@ -11,7 +11,8 @@
 //! | [`Closed`] | no boundary: the door to volume | [`NotClosed`] |
 //!
 //! [`cleanup::clean`] goes from any soup to a valid `Mesh` and says what it changed.
-//! The [design page](design) has the module graph and the numbered invariants.
+//! The [design page](design) has the module graph and the numbered invariants, the [walking page](walking) the orders
+//! of walks and how to edit while walking.
 //!
 //! Lengths are in the units of the input; angles are in radians unless a name says degrees. Nothing is random and
 //! nothing depends on hash order or on the number of threads.
@@ -21,12 +22,15 @@
 //! `rayon`: bulk work on several threads; results are the same with and without.
 
 mod arena;
+mod attributes;
 mod build;
 pub mod cleanup;
 mod closed;
+mod column;
 mod control;
 #[doc = include_str!("design.md")]
 pub mod design {}
+mod edit;
 mod geometry;
 mod indexed;
 #[cfg(feature = "io")]
@@ -38,12 +42,26 @@ mod parallel;
 mod report;
 mod soup;
 mod topology;
+mod traverse;
 mod validate;
 mod walk;
+#[doc = include_str!("walking.md")]
+pub mod walking {}
 
+pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
 pub use build::{BuildDefect, BuildError};
 pub use closed::{Closed, NotClosed};
+pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
 pub use control::{Cancelled, Control, Progress};
+pub use edit::changes::{Change, Lineage, Numbering};
+pub use edit::undo::{Checkpoint, UnknownCheckpoint};
+pub use edit::{
+    AddFaceError, AddVertexError, AddedFace, CollapseError, Collapsed, DissolveVertexError, DissolvedVertex,
+    Few, FillHoleError, FlipEdgeError, JoinFacesError, JoinedFaces, MissingFace, PokeFaceError, PokedFace,
+    RemoveEdgeError, RemoveFaceError, RemoveVertexError, Removed, SplitEdge, SplitEdgeError, SplitEdgeFaces,
+    SplitFace, SplitFaceError, SplitVertex, SplitVertexError, StitchError, Stitched, TriangulateFaceError,
+    TriangulatedFace,
+};
 pub use geometry::deform::{DeformError, DeformOptions};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
@@ -56,10 +74,12 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use report::{
-    Attribute, Element, Kind, MapMismatch, Maps, Outcome, Record, Relation, Report, Step, StepSummary,
+    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
+    Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
-pub use topology::{EdgeRef, MissingFace, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 
 /// The README's program runs.

@@ -1,6 +1,10 @@
 //! The third rung: the half-edge mesh, its storage and its accessors.
 
 use crate::arena::Arena;
+use crate::attributes::Carried;
+use crate::column::{Columns, Kind};
+use crate::edit::changes::Changes;
+use crate::edit::undo::Undo;
 use crate::matching::NONE;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 use glam::DVec3;
@@ -49,11 +53,17 @@ pub struct Mesh {
     pub(crate) face_halfedge: Vec<u32>,
     /// By vertex slot; finite.
     pub(crate) positions: Vec<DVec3>,
-    /// By vertex slot, if the mesh carries normals; finite.
-    pub(crate) normals: Option<Vec<DVec3>>,
+    /// User data.
+    pub(crate) columns: Columns,
+    /// Which of the columns hold the attributes that files know; finite.
+    pub(crate) carried: Carried,
+    /// What was overwritten since the oldest checkpoint, if there is one.
+    pub(crate) undo: Option<Box<Undo>>,
+    /// What edits did, if somebody listens.
+    pub(crate) changes: Option<Box<Changes>>,
 }
 
-/// Why a position or a normal was not set.
+/// Why a position was not set.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SetError {
@@ -61,7 +71,7 @@ pub enum SetError {
     #[error("{0:?} is not a vertex of the mesh")]
     Missing(VertexKey),
     /// The value is NaN or infinite.
-    #[error("the value for {0:?} is not finite")]
+    #[error("the position for {0:?} is not finite")]
     NonFinite(VertexKey),
 }
 
@@ -140,14 +150,6 @@ impl Mesh {
         position, get_position(self, v: VertexKey => vertex_slot) -> DVec3 { self.positions[v as usize] }
     }
 
-    read! {
-        /// The normal a vertex carries, if the mesh carries normals: one that was given, or
-        /// [computed](Self::compute_normals). Moving vertices does not change it.
-        normal, get_normal(self, v: VertexKey => vertex_slot) -> Option<DVec3> {
-            self.normals.as_ref().map(|n| n[v as usize])
-        }
-    }
-
     /// Moves a vertex.
     ///
     /// # Errors
@@ -170,44 +172,29 @@ impl Mesh {
         if !position.is_finite() {
             return Err(SetError::NonFinite(v));
         }
-        self.positions[slot as usize] = position;
-        Ok(())
-    }
-
-    /// Sets the normal of a vertex; if the mesh carried none, all others become zero.
-    ///
-    /// # Errors
-    /// [`SetError`] on a dead key or a normal that is not finite; nothing has changed then.
-    pub fn set_normal(&mut self, v: VertexKey, normal: DVec3) -> Result<(), SetError> {
-        let slot = self.vertex_slot(v).ok_or(SetError::Missing(v))?;
-        if !normal.is_finite() {
-            return Err(SetError::NonFinite(v));
-        }
-        let slots = self.vertices.slot_count();
-        self.normals.get_or_insert_with(|| vec![DVec3::ZERO; slots])[slot as usize] = normal;
+        self.write_position(slot, position);
         Ok(())
     }
 
     /// The one door for bulk writes of positions: a whole column by slot, all or nothing. Entries of dead slots mean
-    /// nothing.
+    /// nothing. Refused by the first vertex in storage order.
     pub(crate) fn replace_positions(&mut self, new: Vec<DVec3>) -> Result<(), SetError> {
-        self.check_column(&new)?;
-        self.positions = new;
+        debug_assert_eq!(new.len(), self.vertices.slot_count());
+        let bad = |&v: &u32| !new.get(v as usize).is_some_and(|p| p.is_finite());
+        if let Some(v) = self.vertices.live().find(bad) {
+            return Err(SetError::NonFinite(self.vertices.key(v)));
+        }
+        if self.undo.is_none() && self.changes.is_none() && self.columns.none_on(Kind::Vertex) {
+            self.positions = new;
+            return Ok(());
+        }
+        // Somebody remembers, listens or is moved along.
+        for v in self.vertices.live().collect::<Vec<_>>() {
+            if self.positions[v as usize] != new[v as usize] {
+                self.write_position(v, new[v as usize]);
+            }
+        }
         Ok(())
-    }
-
-    /// The one door for bulk writes of carried normals, as [`replace_positions`](Self::replace_positions).
-    pub(crate) fn replace_normals(&mut self, new: Vec<DVec3>) -> Result<(), SetError> {
-        self.check_column(&new)?;
-        self.normals = Some(new);
-        Ok(())
-    }
-
-    /// Refuses a column with a value that is not finite, by the first vertex in storage order.
-    fn check_column(&self, column: &[DVec3]) -> Result<(), SetError> {
-        debug_assert_eq!(column.len(), self.vertices.slot_count());
-        let bad = |&v: &u32| !column.get(v as usize).is_some_and(|p| p.is_finite());
-        self.vertices.live().find(bad).map_or(Ok(()), |v| Err(SetError::NonFinite(self.vertices.key(v))))
     }
 
     read! {
@@ -314,16 +301,18 @@ impl Mesh {
         is_isolated, get_is_isolated(self, v: VertexKey => vertex_slot) -> bool { self.vertex_halfedge[v as usize] == NONE }
     }
 
-    /// Bytes of heap memory the mesh holds. O(1).
+    /// Bytes of heap memory the mesh holds: what values of user data own on the heap themselves, and changes that wait to be
+    /// fetched, aside. O(columns).
     pub fn heap_bytes(&self) -> usize {
         let links =
             [&self.next, &self.prev, &self.origin, &self.face, &self.vertex_halfedge, &self.face_halfedge];
-        let vectors = self.positions.capacity() + self.normals.as_ref().map_or(0, Vec::capacity);
         self.vertices.bytes()
             + self.edges.bytes()
             + self.faces.bytes()
             + links.iter().map(|c| c.capacity() * 4).sum::<usize>()
-            + vectors * size_of::<DVec3>()
+            + self.positions.capacity() * size_of::<DVec3>()
+            + self.columns.bytes()
+            + self.checkpoint_bytes()
     }
 
     #[inline]
@@ -383,7 +372,10 @@ impl Default for Mesh {
             vertex_halfedge: vec![NONE],
             face_halfedge: vec![NONE],
             positions: vec![DVec3::ZERO],
-            normals: None,
+            columns: Columns::default(),
+            carried: Carried::default(),
+            undo: None,
+            changes: None,
         }
     }
 }

@@ -27,6 +27,8 @@ pub enum Element {
     Face(u32),
     /// An edge by the two vertices it joins, the lower index first.
     Edge([u32; 2]),
+    /// A corner by its face and its number in it, from 0.
+    Corner([u32; 2]),
 }
 
 impl fmt::Display for Element {
@@ -35,6 +37,7 @@ impl fmt::Display for Element {
             Self::Vertex(v) => write!(f, "vertex {v}"),
             Self::Face(face) => write!(f, "face {face}"),
             Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
+            Self::Corner([face, corner]) => write!(f, "corner {corner} of face {face}"),
         }
     }
 }
@@ -140,7 +143,37 @@ named! {
         TextureCoordinates = "texture_coordinates",
         /// Groups and materials.
         Groups = "groups",
+        /// The names of material files.
+        MaterialFiles = "material_files",
     }
+}
+
+named! {
+    /// Why a value of an attribute was not carried.
+    LossReason {
+        /// It is NaN or infinite: a vertex normal becomes zero, a vertex colour white, a corner has none.
+        NonFinite = "non_finite",
+        /// The corner refers to a value that does not exist, and has none.
+        NoSuchValue = "no_such_value",
+        /// Vertices with different values became one, and the lowest vertex's was kept.
+        Merged = "merged",
+        /// Vertex normals became normals of corners, and no corner names the vertex.
+        NoCorner = "no_corner",
+        /// The face is in two groups, and stays in the one that begins first.
+        TwoGroups = "two_groups",
+    }
+}
+
+/// A value of an attribute that was not carried, while others of it were.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LostValue {
+    /// Of which attribute.
+    pub attribute: Attribute,
+    /// Why.
+    pub reason: LossReason,
+    /// Whose, in the input's numbering.
+    pub element: Element,
 }
 
 /// One change, with its element in the input's numbering and its place.
@@ -170,7 +203,8 @@ pub struct StepSummary {
     pub tolerance: Option<f64>,
 }
 
-/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell.
+/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell. What happened to
+/// attributes stands apart.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
@@ -180,6 +214,9 @@ pub struct Report {
     pub records: Vec<Record>,
     /// Data of the input that the result does not have.
     pub not_carried: Vec<Attribute>,
+    /// Single values that the result does not have, by attribute, reason and element.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub lost_values: Vec<LostValue>,
 }
 
 impl Report {

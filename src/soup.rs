@@ -216,6 +216,9 @@ pub struct PolygonSoup {
     pub corner_uvs: Option<CornerData<[f64; 2]>>,
     /// Named runs of faces, in file order.
     pub groups: Vec<Group>,
+    /// The names of files that describe the materials (`mtllib`), as the file states them; not opened.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub material_files: Vec<String>,
 }
 
 impl PolygonSoup {

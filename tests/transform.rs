@@ -196,6 +196,40 @@ fn normals_turn_by_the_inverse_transpose_and_keep_their_length() {
 }
 
 #[test]
+fn corner_normals_turn_as_those_of_vertices_do() {
+    let mut mesh = cube();
+    let corners: Vec<_> =
+        mesh.faces().flat_map(|f| mesh.face_halfedges(f).map(move |h| (f, h)).collect::<Vec<_>>()).collect();
+    for (f, h) in corners {
+        let normal = mesh.face_normal(f);
+        mesh.set_corner_normal(h, Some(normal)).expect("a corner");
+    }
+    mesh.scale_axes(dvec3(-2.0, 1.0, 3.0), DVec3::ONE).expect("scaled");
+    mesh.rotate_degrees(dvec3(1.0, 2.0, 3.0), 33.0, DVec3::ZERO).expect("turned");
+    for f in mesh.faces() {
+        for h in mesh.face_halfedges(f) {
+            assert!(mesh.corner_normal(h).expect("carried").distance(mesh.face_normal(f)) < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_checkpoint_takes_bulk_writes_back() {
+    let mut mesh = cube();
+    mesh.compute_normals(NormalWeight::Angle);
+    let before = mesh.to_indexed();
+    let checkpoint = mesh.checkpoint();
+    mesh.scale(-2.0, DVec3::ONE).expect("scaled");
+    mesh.rotate_degrees(DVec3::ONE, 33.0, DVec3::ZERO).expect("turned");
+    mesh.deform(|p| p + DVec3::X * p.y, DeformOptions::default()).expect("deformed");
+    mesh.smooth(Default::default()).expect("smoothed");
+    assert_ne!(mesh.to_indexed(), before);
+    mesh.restore(checkpoint).expect("known");
+    assert_eq!(mesh.to_indexed(), before);
+    assert_eq!(mesh.validate(), Ok(()));
+}
+
+#[test]
 fn deform_calls_once_per_vertex_in_order() {
     let pool = shapes::icosphere(1);
     let mut mesh = shapes::mesh(&pool);

@@ -32,3 +32,10 @@ pub(crate) fn direction(v: DVec3) -> DVec3 {
     let length = scaled.length();
     if length > 0.0 && length.is_finite() { scaled / length } else { DVec3::ZERO }
 }
+
+/// The distance of two points; safe for any two, infinite if it is beyond f64.
+pub(crate) fn distance(a: DVec3, b: DVec3) -> f64 {
+    let apart = b - a;
+    let scale = unit_scale(std::iter::once(apart));
+    (apart * scale).length() / scale
+}

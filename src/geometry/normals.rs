@@ -118,8 +118,7 @@ impl Mesh {
         for (slot, normal) in self.vertices.in_user_order().into_iter().zip(computed) {
             column[slot as usize] = normal;
         }
-        // Directions are finite, so this cannot be refused.
-        let _ = self.replace_normals(column);
+        self.replace_normals(column);
     }
 
     /// Where a half-edge starts.
@@ -127,9 +126,27 @@ impl Mesh {
         self.positions[self.origin[h as usize] as usize]
     }
 
-    fn normal_of_face(&self, f: u32) -> DVec3 {
-        let corners = || self.loop_slots(self.face_halfedge[f as usize]).map(|h| self.at(h));
+    pub(crate) fn normal_of_face(&self, f: u32) -> DVec3 {
+        let first = self.corner_across_longest(self.face_halfedge[f as usize]);
+        let corners = || self.loop_slots(first).map(|h| self.at(h));
         let scale = unit_scale(corners());
         direction(double_area_vector(corners().map(|p| p * scale)))
+    }
+
+    /// The half-edge of a triangle whose origin lies across from its longest side: of a sliver, only the product of the
+    /// two shorter sides keeps the digits of the normal. The half-edge itself on other faces.
+    fn corner_across_longest(&self, h: u32) -> u32 {
+        let [a, b, c] = [h, self.next[h as usize], self.prev[h as usize]];
+        if self.next[b as usize] != c {
+            return h;
+        }
+        let across = |h: u32| super::distance(self.at(self.next[h as usize]), self.at(self.prev[h as usize]));
+        [b, c]
+            .into_iter()
+            .fold((a, across(a)), |best, h| {
+                let length = across(h);
+                if length > best.1 { (h, length) } else { best }
+            })
+            .0
     }
 }

@@ -264,16 +264,16 @@ impl Mesh {
     /// Moves every vertex, turns carried normals, and reverses the winding of a map that mirrors.
     fn map(&mut self, at: impl Fn(DVec3) -> DVec3, turn: &Turn, mirrors: bool) -> Result<(), TransformError> {
         let moved: Vec<DVec3> = self.positions.iter().map(|&p| at(p)).collect();
-        let turned: Option<Vec<DVec3>> = match (turn, &self.normals) {
-            (Turn::Keep, _) | (_, None) => None,
-            (turn, Some(normals)) => Some(normals.iter().map(|&n| turn.of(n)).collect()),
-        };
         self.replace_positions(moved)?;
         if mirrors {
             self.reverse();
         }
-        // After the reversal, which negates them. They are finite, so this cannot fail half-way.
-        turned.map_or(Ok(()), |normals| Ok(self.replace_normals(normals)?))
+        if !matches!(turn, Turn::Keep) {
+            // The reversal has negated them.
+            let sign = if mirrors { -1.0 } else { 1.0 };
+            self.turn_normals(|n| turn.of(n * sign));
+        }
+        Ok(())
     }
 }
 

@@ -86,8 +86,9 @@ impl Mesh {
     /// is; a lone one inside a smooth surface stays. An edge at a face without area has no angle, and is not sharp.
     ///
     /// The fan with the lowest face keeps the vertex's number; further ones are numbered at the end, by vertex and
-    /// then clockwise from there. Faces keep theirs. Each parted edge is on record. Carried normals are copied:
-    /// [compute](Self::compute_normals) them anew to have hard edges. O(elements).
+    /// then clockwise from there. Faces keep theirs. Each parted edge is on record. Attributes are
+    /// copied, normals of vertices among them: [compute](Self::compute_normals) them anew to have hard edges. User
+    /// columns are left behind. O(elements).
     ///
     /// # Errors
     /// [`UnweldError`] on an angle outside 0 to 180 degrees; when cancelled.
@@ -117,7 +118,7 @@ impl Mesh {
         let report = Report {
             steps: vec![StepSummary { step: Step::Unweld, changed, tolerance: None }],
             records,
-            not_carried: Vec::new(),
+            ..Report::default()
         };
         let (old, new) = (fans.order.len(), value.vertex_count());
         let stay = (0..old as u32).map(|v| (v, v));
@@ -239,10 +240,9 @@ impl Fans {
         for &f in &self.faces {
             polygons.push(mesh.loop_slots(mesh.face_halfedge[f as usize]).map(|h| self.of[h as usize]));
         }
-        let pick = |column: &Vec<DVec3>| {
-            self.order.iter().chain(&self.added).map(|&v| column[v as usize]).collect::<Vec<_>>()
-        };
-        IndexedMesh::trusted(pick(&mesh.positions), polygons, mesh.normals.as_ref().map(pick))
+        let slots: Vec<u32> = self.order.iter().chain(&self.added).copied().collect();
+        let positions = slots.iter().map(|&v| mesh.positions[v as usize]).collect();
+        IndexedMesh::trusted(positions, polygons, None).carrying(mesh.ordered_attributes(&slots))
     }
 
     /// A record for each edge whose two sides no longer share both ends.

@@ -1,20 +1,15 @@
-//! Native walks over the half-edge mesh: boundary loops, components, reversal.
+//! Native walks over the half-edge mesh: boundary loops, components.
 
 use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh};
 
-/// An operation on a part of the mesh was given a face that is not there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not a face of the mesh")]
-pub struct MissingFace(pub FaceKey);
-
 impl Mesh {
-    /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(edges).
+    /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(slots).
     pub fn is_closed(&self) -> bool {
         self.face_count() > 0 && self.boundary_slots().next().is_none()
     }
 
-    /// The half-edges without a face, in the order of edges. O(edges).
+    /// The half-edges without a face, in the order of edges. O(slots).
     pub fn boundary_halfedges(&self) -> impl Iterator<Item = HalfedgeKey> + '_ {
         self.boundary_slots().map(|h| self.halfedge_key(h))
     }
@@ -24,7 +19,7 @@ impl Mesh {
     }
 
     /// The boundary loops (naked edges), each as its half-edges in [`next`](Self::next) order, in the order of their
-    /// first edges. A closed mesh has none. O(edges).
+    /// first edges. A closed mesh has none. O(slots).
     ///
     /// # Examples
     /// ```
@@ -53,7 +48,7 @@ impl Mesh {
     }
 
     /// The components: faces joined across edges, each list in the order of a breadth-first walk from its first face,
-    /// the lists in the order of their first faces. O(half-edges).
+    /// the lists in the order of their first faces. O(slots).
     ///
     /// # Examples
     /// ```
@@ -93,92 +88,9 @@ impl Mesh {
         faces
     }
 
-    /// Vertices that have a face, less edges, plus faces. O(vertices).
+    /// Vertices that have a face, less edges, plus faces. O(slots).
     pub fn euler_characteristic(&self) -> i64 {
         let used = self.vertices.live().filter(|&v| self.vertex_halfedge[v as usize] != NONE).count();
         used as i64 - self.edge_count() as i64 + self.face_count() as i64
-    }
-
-    /// Flips the mesh: reverses the winding of every face and negates carried normals. Twice is the identity; all keys
-    /// stay valid, each half-edge stays with its face and now runs the other way. O(elements).
-    ///
-    /// # Examples
-    /// ```
-    /// # use meshwright::{IndexedMesh, Mesh, glam::DVec3};
-    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-    /// # let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
-    /// let h = mesh.halfedges().next().unwrap();
-    /// let (a, b) = (mesh.origin(h), mesh.target(h));
-    /// mesh.reverse();
-    /// assert_eq!((mesh.origin(h), mesh.target(h)), (b, a));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn reverse(&mut self) {
-        let edges: Vec<u32> = self.edges.live().collect();
-        let vertices: Vec<u32> = self.vertices.live().collect();
-        let faces: Vec<u32> = self.faces.live().collect();
-        self.reverse_elements(&edges, &vertices, &faces);
-    }
-
-    /// Flips one component: reverses the winding of every face that can be reached from `f` across edges. O(its size),
-    /// and one byte per slot of the mesh.
-    ///
-    /// # Errors
-    /// [`MissingFace`] on a dead key.
-    ///
-    /// # Examples
-    /// ```
-    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
-    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-    /// # let pool = IndexedMesh::from_triangles(points, &[[0, 1, 2]])?;
-    /// # let mut mesh = Mesh::build(&pool)?;
-    /// let f = mesh.faces().next().unwrap();
-    /// mesh.reverse_component(f)?;
-    /// assert_eq!(&mesh.to_indexed().polygons()[0], &[0, 2, 1]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn reverse_component(&mut self, f: FaceKey) -> Result<(), MissingFace> {
-        let first = self.face_slot(f).ok_or(MissingFace(f))?;
-        let faces = self.component_slots(first, &mut vec![false; self.faces.slot_count()]);
-        let mut edges = Vec::new();
-        let mut vertices = Vec::new();
-        for &f in &faces {
-            for h in self.loop_slots(self.face_halfedge[f as usize]) {
-                edges.push(h >> 1);
-                vertices.push(self.origin[h as usize]);
-            }
-        }
-        for list in [&mut edges, &mut vertices] {
-            list.sort_unstable();
-            list.dedup();
-        }
-        self.reverse_elements(&edges, &vertices, &faces);
-        Ok(())
-    }
-
-    /// Reverses whole components, given all their elements.
-    fn reverse_elements(&mut self, edges: &[u32], vertices: &[u32], faces: &[u32]) {
-        // The half-edge that ends at a corner starts there afterwards, and stays with its face: so the one before the
-        // vertex's (on the boundary, the other boundary half-edge) and the one before the face's first take over.
-        for &v in vertices {
-            let h = &mut self.vertex_halfedge[v as usize];
-            if *h != NONE {
-                *h = self.prev[*h as usize];
-            }
-            if let Some(normals) = &mut self.normals {
-                normals[v as usize] = -normals[v as usize];
-            }
-        }
-        for &f in faces {
-            let h = &mut self.face_halfedge[f as usize];
-            *h = self.prev[*h as usize];
-        }
-        for &e in edges {
-            let h = 2 * e as usize;
-            self.origin.swap(h, h + 1);
-            for h in [h, h + 1] {
-                std::mem::swap(&mut self.next[h], &mut self.prev[h]);
-            }
-        }
     }
 }

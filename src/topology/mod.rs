@@ -9,7 +9,6 @@ mod orient;
 mod union_find;
 
 pub use loops::NakedEdges;
-pub use mesh::MissingFace;
 pub use orient::{NotOrientable, unify_winding};
 
 pub(crate) use duplicates::{Cycle, duplicate_faces};

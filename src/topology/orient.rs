@@ -30,8 +30,9 @@ impl fmt::Display for NotOrientable {
 ///
 /// Each part that hangs together across two-face edges is unified by itself, and the largest piece of it whose winding
 /// is consistent keeps its winding (the one with the lowest face, among equals). Edges with three or more faces are
-/// never crossed. A reversed face keeps its first corner. Given normals and the vertices stay as they are. O(corners),
-/// on the same matched half-edges that [`Mesh::build`](crate::Mesh::build) uses.
+/// never crossed. A reversed face keeps its first corner; corner data moves with its corners, and corner normals turn with
+/// the face unless they lie on the side where it then faces. Vertices and their normals stay as they are. O(corners), on
+/// the same matched half-edges that [`Mesh::build`](crate::Mesh::build) uses.
 ///
 /// # Errors
 /// [`NotOrientable`] with a witness for each part that cannot be oriented.
@@ -50,6 +51,7 @@ impl fmt::Display for NotOrientable {
 pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, NotOrientable> {
     let mesh = topology.mesh;
     let mut polygons = mesh.polygons().clone();
+    let mut attributes = mesh.attributes().clone();
     let mut report = Report::default();
     if topology.matching.any_conflict {
         let found = orient(&polygons, &topology.face_of, &topology.matching.mates());
@@ -57,7 +59,9 @@ pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, No
             return Err(NotOrientable { cycles: found.cycles });
         }
         flip_faces(&mut polygons, None, &found.flip);
+        attributes.turn_with(&found.flip, mesh.positions(), &polygons);
         for (face, _) in found.flip.iter().enumerate().filter(|(_, flip)| **flip) {
+            attributes.reverse_corners(polygons.starts()[face]..polygons.starts()[face + 1]);
             let corners = &mesh.polygons()[face];
             let sum: DVec3 =
                 corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
@@ -70,9 +74,8 @@ pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, No
         }
     }
     report.steps.push(StepSummary { step: Step::Unify, changed: report.records.len(), tolerance: None });
-    let normals = mesh.normals().map(<[DVec3]>::to_vec);
     Ok(Outcome {
-        value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, normals),
+        value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, None).carrying(attributes),
         report,
         maps: Maps::identity(mesh.vertex_count(), mesh.face_count()),
     })

@@ -3,9 +3,11 @@
 #[cfg(test)]
 mod tests;
 
+use crate::column::{Kind, Store};
 use crate::matching::NONE;
 use crate::topology::Cycle;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, Mesh, VertexKey};
+use glam::DVec3;
 
 /// A broken invariant and where. No public call can bring one about; if you see one, it is a bug of this crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -129,8 +131,11 @@ impl Mesh {
             ("face", self.face.len() == h),
             ("vertex_halfedge", self.vertex_halfedge.len() == v),
             ("positions", self.positions.len() == v),
-            ("normals", self.normals.as_ref().is_none_or(|n| n.len() == v)),
             ("face_halfedge", self.face_halfedge.len() == f),
+            ("vertex data", self.columns.fit(Kind::Vertex, v)),
+            ("corner data", self.columns.fit(Kind::Corner, h)),
+            ("edge data", self.columns.fit(Kind::Edge, h / 2)),
+            ("face data", self.columns.fit(Kind::Face, f)),
             ("vertices", self.vertices.is_sound()),
             ("edges", self.edges.is_sound()),
             ("faces", self.faces.is_sound()),
@@ -199,7 +204,7 @@ impl Mesh {
         found.extend(self.repeated_elements());
         let finite = |v: u32| {
             self.positions[v as usize].is_finite()
-                && self.normals.as_ref().is_none_or(|n| n[v as usize].is_finite())
+                && self.normal_column().is_none_or(|n| n.get(v).is_some_and(|n| n.is_finite()))
         };
         found.extend(
             self.vertices.live().filter(|&v| !finite(v)).map(|v| Violation::NonFinite(self.vertices.key(v))),
@@ -403,7 +408,9 @@ impl Mesh {
             }
             in_fans += valence;
         }
-        let normals = self.normals.iter().all(|n| self.vertices.live().all(|v| n[v as usize].is_finite()));
+        let is_finite =
+            |n: &Store<DVec3>| self.vertices.live().all(|v| n.get(v).is_some_and(|n| n.is_finite()));
+        let normals = self.normal_column().is_none_or(is_finite);
         in_fans == 2 * self.edge_count() && normals
     }
 

@@ -55,7 +55,7 @@ fn m1_a_column_of_the_wrong_length_is_found() {
         ("vertex_halfedge", |m| m.vertex_halfedge.push(0)),
         ("face_halfedge", |m| m.face_halfedge.truncate(1)),
         ("positions", |m| m.positions.push(DVec3::ZERO)),
-        ("normals", |m| m.normals = Some(vec![])),
+        ("vertex data", |m| m.replace_normals(vec![])),
     ];
     for (name, damage) in columns {
         let mut mesh = strip();
@@ -100,7 +100,7 @@ fn m2_links_that_lead_nowhere_are_found_in_every_column() {
 #[test]
 fn m2_a_link_to_a_removed_element_is_found() {
     let mut mesh = strip();
-    mesh.faces.free(3);
+    mesh.faces.remove(3);
     finds(&mesh, |v| matches!(v, Violation::DanglingLink { column: "face", link: 3, .. }));
 }
 
@@ -190,7 +190,7 @@ fn m10_a_face_with_a_second_loop_is_found() {
             *f = 1;
         }
     }
-    mesh.faces.free(2);
+    mesh.faces.remove(2);
     finds(&mesh, |v| matches!(v, Violation::SecondLoop(_)));
 }
 
@@ -202,7 +202,7 @@ fn m11_an_edge_without_a_face_is_found() {
             *f = NONE;
         }
     }
-    mesh.faces.free(3);
+    mesh.faces.remove(3);
     finds(&mesh, |v| matches!(v, Violation::FacelessEdge(_)));
 }
 
@@ -298,11 +298,11 @@ fn m17_two_faces_with_the_same_corners_are_found() {
     mesh.face_halfedge[2] = on_second;
     for e in 2..=mesh.edges.slot_count() as u32 {
         if mesh.edges.is_live(e) && !outline.iter().any(|h| h >> 1 == e) {
-            mesh.edges.free(e);
+            mesh.edges.remove(e);
         }
     }
     for v in 4..=6 {
-        mesh.vertices.free(v);
+        mesh.vertices.remove(v);
     }
     assert_eq!(mesh.violations().len(), 1);
     finds(&mesh, |v| matches!(v, Violation::DuplicateFaces(..)));
@@ -315,7 +315,8 @@ fn m18_a_position_or_normal_that_is_not_finite_is_found() {
     finds(&mesh, |v| matches!(v, Violation::NonFinite(_)));
     let mut mesh = cube();
     mesh.compute_normals(crate::NormalWeight::Area);
-    mesh.normals.as_mut().unwrap()[2].x = f64::INFINITY;
+    let column = mesh.carried.normals.unwrap().index;
+    mesh.write_value(crate::column::Kind::Vertex, column, 2, DVec3::INFINITY);
     finds(&mesh, |v| matches!(v, Violation::NonFinite(_)));
 }
 

@@ -1,6 +1,6 @@
 //! Commands that change the whole mesh: transforms, weld, subdivision, smoothing.
 
-use super::change::import_change_write;
+use super::change::import_edit_write;
 use crate::args::{self, Deform, Origin, Smooth, Subdivide, Transform, Unweld, WeldCommand};
 use crate::progress;
 use crate::session::{Answer, Failure, Session};
@@ -17,7 +17,7 @@ fn taken(mesh: &mut Mesh, outcome: Outcome<Mesh>) -> Option<Report> {
 }
 
 pub(super) fn weld(session: &mut Session, args: &WeldCommand) -> Result<Answer, Failure> {
-    import_change_write(session, &args.change, |mesh| {
+    import_edit_write(session, &args.change, |mesh| {
         let outcome = progress::shown(|hook| {
             mesh.weld(WeldOptions { tolerance: args.tolerance, control: Control::new(hook) })
         })?;
@@ -26,7 +26,7 @@ pub(super) fn weld(session: &mut Session, args: &WeldCommand) -> Result<Answer, 
 }
 
 pub(super) fn unweld(session: &mut Session, args: &Unweld) -> Result<Answer, Failure> {
-    import_change_write(session, &args.change, |mesh| {
+    import_edit_write(session, &args.change, |mesh| {
         let outcome = progress::shown(|hook| {
             mesh.unweld(UnweldOptions { degrees: args.angle, control: Control::new(hook) })
         });
@@ -49,7 +49,7 @@ pub(super) fn smooth(session: &mut Session, args: &Smooth) -> Result<Answer, Fai
         args::Boundary::Slide => Boundary::Slide,
         args::Boundary::Free => Boundary::Free,
     };
-    import_change_write(session, &args.change, |mesh| {
+    import_edit_write(session, &args.change, |mesh| {
         let smoothed = progress::shown(|hook| {
             let iterations = args.iterations;
             let control = Control::new(hook);
@@ -66,7 +66,7 @@ pub(super) fn subdivide(session: &mut Session, args: &Subdivide) -> Result<Answe
         args::Scheme::CatmullClark => Scheme::CatmullClark,
         args::Scheme::Sqrt3 => Scheme::Sqrt3,
     };
-    import_change_write(session, &args.change, |mesh| {
+    import_edit_write(session, &args.change, |mesh| {
         let outcome = progress::shown(|hook| {
             let control = Control::new(hook);
             mesh.subdivide(SubdivideOptions { scheme, levels: args.levels, control, ..Default::default() })
@@ -76,7 +76,7 @@ pub(super) fn subdivide(session: &mut Session, args: &Subdivide) -> Result<Answe
 }
 
 pub(super) fn transform(session: &mut Session, args: &Transform) -> Result<Answer, Failure> {
-    import_change_write(session, &args.change, |mesh| {
+    import_edit_write(session, &args.change, |mesh| {
         let origin = match args.origin {
             Origin::Point(p) => DVec3::from(p),
             Origin::Center => mesh.bounds().map_or(DVec3::ZERO, |b| b.center()),
@@ -95,7 +95,7 @@ pub(super) fn transform(session: &mut Session, args: &Transform) -> Result<Answe
 }
 
 pub(super) fn deform(session: &mut Session, args: &Deform) -> Result<Answer, Failure> {
-    import_change_write(session, &args.change, |mesh| {
+    import_edit_write(session, &args.change, |mesh| {
         let wave = |p: DVec3| p + DVec3::Z * ((5.0 * p.x).sin() * (5.0 * p.y).cos() * args.wave);
         let deformed =
             progress::shown(|hook| mesh.deform(wave, DeformOptions { control: Control::new(hook) }));

@@ -5,22 +5,34 @@ use super::look::fields;
 use crate::args::{Convert, Unify};
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::{import, output};
-use meshwright::{Mesh, Report, unify_winding};
+use meshwright::{IndexedMesh, Mesh, Report, unify_winding};
 use serde_json::{Map, json};
 
 pub(super) fn convert(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
-    import_change_write(session, args, |_| Ok(None))
+    import_change_write(session, args, |pool| pool)
 }
 
 pub(super) fn flip(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
-    import_change_write(session, args, |mesh| {
-        mesh.reverse();
-        Ok(None)
-    })
+    import_change_write(session, args, IndexedMesh::reversed)
 }
 
-/// Imports a mesh, changes it, and writes it. The change may have an account.
-pub(super) fn import_change_write(
+fn import_change_write(
+    session: &mut Session,
+    args: &Convert,
+    change: impl FnOnce(IndexedMesh) -> IndexedMesh,
+) -> Result<Answer, Failure> {
+    args.output.format()?;
+    let (pool, import) = import::pool(session, &args.file, args.strict.strict)?;
+    let pool = session.timed(Phase::Run, || change(pool));
+    let (vertices, faces) = (pool.vertex_count(), pool.face_count());
+    let lost = output::write_mesh(session, &args.output, &pool.into())?;
+    let json = json!({ "vertices": vertices, "faces": faces, "lost": lost, "import": import });
+    let text = format!("wrote {}: {vertices} vertices, {faces} faces\n", args.output.output.display());
+    Ok(Answer { json: fields(json), text, ..Answer::default() })
+}
+
+/// Imports a mesh, changes it as a mesh, and writes it. The change may have an account.
+pub(super) fn import_edit_write(
     session: &mut Session,
     args: &Convert,
     change: impl FnOnce(&mut Mesh) -> Result<Option<Report>, Failure>,
@@ -39,6 +51,7 @@ pub(super) fn import_change_write(
     if let Some(report) = report {
         json.extend(fields(json!({
             "counts": report.counts(), "steps": report.steps, "not_carried": report.not_carried,
+            "lost_values": import::lost_values(&report),
         })));
         list = Some(("defects", serde_json::to_string(&report.records).map_err(Failure::refused)?));
         for line in import::changes(&report) {

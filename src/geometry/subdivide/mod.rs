@@ -12,7 +12,7 @@ mod sqrt3;
 use super::unit_scale;
 use super::weld::BadAngle;
 use crate::build::lay_out;
-use crate::report::{Attribute, Maps, Outcome, Report, Step, StepSummary};
+use crate::report::{Maps, Outcome, Report, Step, StepSummary};
 use crate::soup::MAX_ELEMENTS;
 use crate::{BuildError, Cancelled, Control, EdgeKey, FaceKey, IndexedMesh, Mesh, VertexKey};
 use dense::{Dense, Prepared};
@@ -156,8 +156,8 @@ impl Mesh {
     /// Vertices keep their numbers (those of [`to_indexed`](Self::to_indexed)); those on edges follow, then those
     /// inside faces; the parts of a face stand together in its place, the part at its first corner first. The maps tell
     /// parents: a new vertex comes from one old vertex, from the two ends of the edge it was put on, or from all corners
-    /// of the face it was put in; a new face from the face it is a part of (or the two, for [`Scheme::Sqrt3`]). Carried
-    /// normals are left behind. O(faces of the result).
+    /// of the face it was put in; a new face from the face it is a part of (or the two, for [`Scheme::Sqrt3`]). Attributes
+    /// and user columns are left behind. O(faces of the result).
     ///
     /// # Errors
     /// [`SubdivideError`]: dead keys, options the scheme has no rule for, more faces than allowed, faces that cannot be
@@ -197,9 +197,7 @@ impl Mesh {
             report.steps.push(StepSummary { step: Step::Triangulate, changed: cut, tolerance: None });
         }
         report.steps.push(StepSummary { step: Step::Subdivide, changed: 0, tolerance: None });
-        if self.normals.is_some() && levels > 0 {
-            report.not_carried.push(Attribute::VertexNormals);
-        }
+        report.not_carried = self.carried_attributes();
         let (value, maps, changed) = if let Some(only) = options.only {
             partial::subdivide(self, only, levels, limit, &mut control)?
         } else {
