@@ -10,7 +10,7 @@ mod shapes;
 
 use cpu_time::ThreadTime;
 use meshwright::glam::DVec3;
-use meshwright::{IndexedMesh, Mesh};
+use meshwright::{IndexedMesh, Mesh, Scheme, SmoothMethod, SmoothOptions, SubdivideOptions, WeldOptions};
 use std::error::Error;
 use std::hint::black_box;
 use std::time::Duration;
@@ -99,6 +99,25 @@ fn time(pool: &IndexedMesh, repeats: usize) {
     let (boundary, count) = best(repeats, || mesh.boundary_halfedges().count());
     print("boundary", nanos(boundary) / mesh.edge_count() as f64, "ns/edge");
     print("boundary_edges", count as f64, "edges");
+    for (name, scheme) in [
+        ("midpoint", Scheme::Midpoint),
+        ("loop", Scheme::Loop),
+        ("catmull_clark", Scheme::CatmullClark),
+        ("sqrt3", Scheme::Sqrt3),
+    ] {
+        let options = || SubdivideOptions { scheme, ..Default::default() };
+        let (took, fine) = best(repeats, || mesh.subdivide(options()).expect("subdivided"));
+        print(name, took.as_secs_f64(), "s");
+        drop(fine);
+    }
+    for (name, method) in [("laplacian", SmoothMethod::Laplacian), ("cotangent", SmoothMethod::Cotangent)] {
+        let mut mesh = mesh.clone();
+        let options = || SmoothOptions { method, iterations: 10, ..Default::default() };
+        let (took, _) = best(repeats, || mesh.smooth(options()).expect("smoothed"));
+        print(name, took.as_secs_f64() / 10.0, "s/iteration");
+    }
+    let (took, _) = best(repeats, || mesh.weld(WeldOptions { tolerance: 1e-9, ..Default::default() }));
+    print("weld", took.as_secs_f64(), "s");
     let (back, pool) = best(repeats, || mesh.to_indexed());
     print("to_indexed", nanos(back) / pool.face_count() as f64, "ns/face");
 }

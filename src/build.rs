@@ -131,6 +131,11 @@ impl From<&Mesh> for IndexedMesh {
 /// Lays out the mesh of a pairing without conflicts and 3+ edges; `None` if a vertex is pinched or a face is there
 /// twice.
 pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
+    lay_out(pool, pairing).filter(each_vertex_has_one_fan)
+}
+
+/// The same for faces that are known to have neither pinches nor repeats.
+pub(crate) fn lay_out(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
     let polygons = pool.polygons();
     let halfedges = 2 * (pairing.edges + 1);
     let mut mesh = Mesh {
@@ -165,7 +170,7 @@ pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
             before = h;
         }
     }
-    if !link_boundary(&mut mesh, &pairing.open) || !each_vertex_has_one_fan(&mesh) {
+    if !link_boundary(&mut mesh, &pairing.open) {
         return None;
     }
     mesh.adopt(pool.attributes(), |corner| pairing.use_of[corner] + 2);

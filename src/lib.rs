@@ -62,8 +62,13 @@ pub use edit::{
     SplitFace, SplitFaceError, SplitVertex, SplitVertexError, StitchError, Stitched, TriangulateFaceError,
     TriangulatedFace,
 };
+pub use geometry::deform::{DeformError, DeformOptions};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
+pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
+pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
+pub use geometry::transform::TransformError;
+pub use geometry::weld::{BadAngle, UnweldError, UnweldOptions, WeldOptions};
 pub use glam;
 pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};

@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::attributes::Carried;
-use crate::column::Columns;
+use crate::column::{Columns, Kind};
 use crate::edit::changes::Changes;
 use crate::edit::undo::Undo;
 use crate::matching::NONE;
@@ -173,6 +173,27 @@ impl Mesh {
             return Err(SetError::NonFinite(v));
         }
         self.write_position(slot, position);
+        Ok(())
+    }
+
+    /// The one door for bulk writes of positions: a whole column by slot, all or nothing. Entries of dead slots mean
+    /// nothing. Refused by the first vertex in storage order.
+    pub(crate) fn replace_positions(&mut self, new: Vec<DVec3>) -> Result<(), SetError> {
+        debug_assert_eq!(new.len(), self.vertices.slot_count());
+        let bad = |&v: &u32| !new.get(v as usize).is_some_and(|p| p.is_finite());
+        if let Some(v) = self.vertices.live().find(bad) {
+            return Err(SetError::NonFinite(self.vertices.key(v)));
+        }
+        if self.undo.is_none() && self.changes.is_none() && self.columns.none_on(Kind::Vertex) {
+            self.positions = new;
+            return Ok(());
+        }
+        // Somebody remembers, listens or is moved along.
+        for v in self.vertices.live().collect::<Vec<_>>() {
+            if self.positions[v as usize] != new[v as usize] {
+                self.write_position(v, new[v as usize]);
+            }
+        }
         Ok(())
     }
 

@@ -97,6 +97,8 @@ named! {
         PinchedVertex = "pinched_vertex",
         /// An edge that doubled another between the same two vertices; a vertex was put at its midpoint.
         ParallelEdge = "parallel_edge",
+        /// An edge at which the surface turns by more than an angle; parted.
+        SharpEdge = "sharp_edge",
     }
 }
 
@@ -119,6 +121,12 @@ named! {
         CutEdges = "cut_edges",
         /// Splitting of vertices so that each has one fan.
         SplitVertices = "split_vertices",
+        /// Parting of sharp edges.
+        Unweld = "unweld",
+        /// Cutting of polygons into triangles by the shared rule.
+        Triangulate = "triangulate",
+        /// One or more levels of subdivision.
+        Subdivide = "subdivide",
     }
 }
 
@@ -393,6 +401,22 @@ impl Relation {
             forward: Lists::group(old_count, pairs.iter().copied()),
             backward: Lists::group(new_count, pairs.iter().map(|&(old, new)| (new, old))),
         }
+    }
+
+    /// Every new element is a part of one old one, below `old_count`. O(elements).
+    pub(crate) fn from_parents(old_count: usize, parents: Vec<u32>) -> Self {
+        let forward = Lists::group(old_count, parents.iter().copied().zip(0..));
+        Self { forward, backward: Lists { starts: Vec::new(), items: parents } }
+    }
+
+    /// For each new element, in order, its old ones: ascending, without repeats, below `old_count`. O(pairs).
+    pub(crate) fn from_old_of(old_count: usize, starts: Vec<u32>, items: Vec<u32>) -> Self {
+        let count = starts.len().saturating_sub(1);
+        let single = items.len() == count && starts.iter().zip(0u32..).all(|(&s, i)| s == i);
+        let backward = Lists { starts: if single { Vec::new() } else { starts }, items };
+        let pairs = backward.pairs().map(|(new, old)| (old, new));
+        let forward = Lists::group(old_count, pairs);
+        Self { forward, backward }
     }
 
     /// The number of old elements.

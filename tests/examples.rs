@@ -14,10 +14,10 @@ mod collapse_short_edges;
 mod make_sample;
 #[path = "../examples/one_ring.rs"]
 mod one_ring;
-#[path = "../examples/select_features.rs"]
-mod select_features;
 #[path = "../examples/poke_and_flip.rs"]
 mod poke_and_flip;
+#[path = "../examples/select_features.rs"]
+mod select_features;
 #[path = "../examples/undo.rs"]
 mod undo;
 

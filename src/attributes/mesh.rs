@@ -337,6 +337,24 @@ impl Mesh {
         }
     }
 
+    /// Turns all carried normals, of vertices and of corners.
+    pub(crate) fn turn_normals(&mut self, turn: impl Fn(DVec3) -> DVec3) {
+        if let Some(column) = self.carried.normals {
+            for v in self.vertices.live().collect::<Vec<_>>() {
+                if let Some(normal) = self.stored(Kind::Vertex, Some(column), v) {
+                    self.write_value(Kind::Vertex, column.index, v, turn(normal));
+                }
+            }
+        }
+        if let Some(column) = self.carried.corner_normals {
+            for h in self.ordered_slots(Kind::Corner) {
+                if let Some(normal) = self.stored(Kind::Corner, Some(column), h).flatten() {
+                    self.write_value(Kind::Corner, column.index, h, Some(turn(normal)));
+                }
+            }
+        }
+    }
+
     /// Takes over the attributes of the pool that a fresh mesh was built from; `halfedge_of` gives the half-edge of each
     /// corner.
     pub(crate) fn adopt(&mut self, attributes: &Attributes, halfedge_of: impl Fn(usize) -> u32) {

@@ -1,8 +1,14 @@
-//! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures.
+//! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures; transforms, weld,
+//! subdivision and smoothing in bulk.
 
+pub(crate) mod deform;
 pub(crate) mod measure;
 pub(crate) mod normals;
+pub(crate) mod smooth;
+pub(crate) mod subdivide;
+pub(crate) mod transform;
 pub(crate) mod triangulate;
+pub(crate) mod weld;
 
 use glam::DVec3;
 

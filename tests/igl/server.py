@@ -1,6 +1,6 @@
 """libigl behind a pipe: a JSON line and raw little-endian arrays each way.
 
-A request is {"vertices": n, "faces": m}, followed by n x 3 float64 and m x 3 int64. The answer is a JSON line of facts that
+A request is {"vertices": n, "faces": m, "call": c}, followed by n x 3 float64 and m x 3 int64. The answer is a JSON line of facts that
 ends with {"arrays": [[name, dtype, shape], ...]}, followed by those arrays.
 """
 
@@ -47,6 +47,33 @@ def answer(v, f):
     return facts, arrays
 
 
+def mesh(v, f):
+    """A mesh as the answer."""
+    return {}, {
+        "vertices": np.asarray(v, dtype="<f8").reshape(-1, 3),
+        "faces": np.asarray(f, dtype="<i8").reshape(-1, 3),
+    }
+
+
+def laplacian(v, f):
+    """What the cotangent matrix makes of the positions, and its diagonal."""
+    matrix = igl.cotmatrix(v, f)
+    return {}, {
+        "laplacian": np.asarray(matrix @ v, dtype="<f8").reshape(-1, 3),
+        "diagonal": np.asarray(matrix.diagonal(), dtype="<f8"),
+    }
+
+
+CALLS = {
+    "facts": answer,
+    "loop1": lambda v, f: mesh(*igl.loop(v, f, 1)),
+    "loop2": lambda v, f: mesh(*igl.loop(v, f, 2)),
+    "upsample1": lambda v, f: mesh(*igl.upsample(v, f, 1)),
+    "upsample2": lambda v, f: mesh(*igl.upsample(v, f, 2)),
+    "cotmatrix": laplacian,
+}
+
+
 def read(stream, dtype, rows):
     """A table of three columns from the pipe."""
     data = stream.read(rows * 3 * np.dtype(dtype).itemsize)
@@ -63,7 +90,7 @@ def main():
         if len(f) == 0 or f.min() < 0 or f.max() >= len(v):
             facts, arrays = {"error": "no faces, or indices out of range"}, {}
         else:
-            facts, arrays = answer(v, f)
+            facts, arrays = CALLS[request["call"]](v, f)
         facts["arrays"] = [[name, a.dtype.str, list(a.shape)] for name, a in arrays.items()]
         sink.write(json.dumps(facts).encode() + b"\n")
         for array in arrays.values():

@@ -5,7 +5,7 @@ use super::look::fields;
 use crate::args::{Convert, Unify};
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::{import, output};
-use meshwright::{IndexedMesh, unify_winding};
+use meshwright::{IndexedMesh, Mesh, Report, unify_winding};
 use serde_json::{Map, json};
 
 pub(super) fn convert(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
@@ -29,6 +29,40 @@ fn import_change_write(
     let json = json!({ "vertices": vertices, "faces": faces, "lost": lost, "import": import });
     let text = format!("wrote {}: {vertices} vertices, {faces} faces\n", args.output.output.display());
     Ok(Answer { json: fields(json), text, ..Answer::default() })
+}
+
+/// Imports a mesh, changes it as a mesh, and writes it. The change may have an account.
+pub(super) fn import_edit_write(
+    session: &mut Session,
+    args: &Convert,
+    change: impl FnOnce(&mut Mesh) -> Result<Option<Report>, Failure>,
+) -> Result<Answer, Failure> {
+    args.output.format()?;
+    let (mut mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
+    let report = session.timed(Phase::Run, || change(&mut mesh))?;
+    let soup = session.timed(Phase::Run, || mesh.to_indexed().into());
+    let lost = output::write_mesh(session, &args.output, &soup)?;
+    let json = json!({
+        "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "lost": lost, "import": import,
+    });
+    let mut json = fields(json);
+    let mut list = None;
+    let mut text = String::new();
+    if let Some(report) = report {
+        json.extend(fields(json!({
+            "counts": report.counts(), "steps": report.steps, "not_carried": report.not_carried,
+            "lost_values": import::lost_values(&report),
+        })));
+        list = Some(("defects", serde_json::to_string(&report.records).map_err(Failure::refused)?));
+        for line in import::changes(&report) {
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+    let destination = args.output.output.display();
+    let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+    text.push_str(&format!("wrote {destination}: {vertices} vertices, {faces} faces\n"));
+    Ok(Answer { json, list, text, is_no: false })
 }
 
 pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failure> {

@@ -1,5 +1,6 @@
 //! The commands, each from its arguments to its answer.
 
+mod bulk;
 mod change;
 mod clean;
 mod look;
@@ -19,6 +20,12 @@ pub(crate) fn run(command: &Command, session: &mut Session) -> Result<Answer, Fa
         Command::Convert(args) => change::convert(session, args),
         Command::Flip(args) => change::flip(session, args),
         Command::Unify(args) => change::unify(session, args),
+        Command::Weld(args) => bulk::weld(session, args),
+        Command::Unweld(args) => bulk::unweld(session, args),
+        Command::Smooth(args) => bulk::smooth(session, args),
+        Command::Subdivide(args) => bulk::subdivide(session, args),
+        Command::Transform(args) => bulk::transform(session, args),
+        Command::Deform(args) => bulk::deform(session, args),
     }
 }
 
