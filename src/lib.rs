@@ -35,6 +35,7 @@ mod key;
 mod matching;
 mod mesh;
 mod parallel;
+mod query;
 mod report;
 mod soup;
 mod topology;
@@ -50,6 +51,10 @@ pub use glam;
 pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
+pub use query::{
+    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, QueryError, Ray,
+    RayError, RayHit, Side, SolidIndex,
+};
 pub use report::{
     Attribute, Element, Kind, MapMismatch, Maps, Outcome, Record, Relation, Report, Step, StepSummary,
 };
