@@ -148,12 +148,16 @@ impl<'t> Cast<'t> {
     #[inline]
     pub(crate) fn walk(&self, ordered: bool, mut leaf: impl FnMut(std::ops::Range<u32>) -> f32) {
         let mut limit = f32::INFINITY;
-        let mut stack: SmallVec<[(f32, u32); 96]> = SmallVec::new();
+        let mut stack: SmallVec<[(f32, u32, u8); 96]> = SmallVec::new();
         if !self.tree.nodes.is_empty() {
-            stack.push((0.0, 0));
+            stack.push((0.0, 0, INNER));
         }
-        while let Some((enter, at)) = stack.pop() {
+        while let Some((enter, at, count)) = stack.pop() {
             if enter > limit {
+                continue;
+            }
+            if count != INNER {
+                limit = leaf(at..at + u32::from(count));
                 continue;
             }
             let node = &self.tree.nodes[at as usize];
@@ -162,19 +166,12 @@ impl<'t> Cast<'t> {
             while met != 0 {
                 let i = met.trailing_zeros() as usize;
                 met &= met - 1;
-                match node.count[i] {
-                    INNER => stack.push((enter[i], node.child[i])),
-                    count => limit = leaf(node.child[i]..node.child[i] + u32::from(count)),
-                }
-            }
-            if ordered {
+                let mut j = stack.len();
+                stack.push((enter[i], node.child[i], node.count[i]));
                 // The nearest on top.
-                for i in bottom + 1..stack.len() {
-                    let mut j = i;
-                    while j > bottom && stack[j - 1].0 < stack[j].0 {
-                        stack.swap(j - 1, j);
-                        j -= 1;
-                    }
+                while ordered && j > bottom && stack[j - 1].0 < stack[j].0 {
+                    stack.swap(j - 1, j);
+                    j -= 1;
                 }
             }
         }
@@ -186,7 +183,7 @@ impl<'t> Cast<'t> {
         let mut enter = [0.0f32; WIDTH];
         let mut exit = [limit; WIDTH];
         for axis in 0..3 {
-            let (near, far) = (&node.bounds[self.rows[axis].0], &node.bounds[self.rows[axis].1]);
+            let (near, far) = (node.sides(self.rows[axis].0), node.sides(self.rows[axis].1));
             for i in 0..WIDTH {
                 let a = (near[i] - self.near[axis]) * self.inverse[axis];
                 let b = (far[i] - self.far[axis]) * self.inverse[axis];

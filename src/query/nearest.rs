@@ -81,9 +81,10 @@ impl<'t> Probe<'t> {
     fn distances(&self, node: &Node) -> [f32; WIDTH] {
         let mut squares = [0.0f32; WIDTH];
         for axis in 0..3 {
+            let (low, high) = (node.sides(axis), node.sides(axis + 3));
             for i in 0..WIDTH {
-                let below = node.bounds[axis][i] - self.high[axis];
-                let above = self.low[axis] - node.bounds[axis + 3][i];
+                let below = low[i] - self.high[axis];
+                let above = self.low[axis] - high[i];
                 let gap = if below > above { below } else { above };
                 let gap = if gap > 0.0 { gap } else { 0.0 };
                 squares[i] += gap * gap;
@@ -95,9 +96,10 @@ impl<'t> Probe<'t> {
     /// The same in double precision, for points so far away that single precision tells nothing.
     #[cold]
     fn far_distances(&self, node: &Node) -> [f32; WIDTH] {
+        let sides: [[f32; WIDTH]; 6] = std::array::from_fn(|row| node.sides(row));
         std::array::from_fn(|i| {
-            let low = DVec3::from_array([0, 1, 2].map(|k| f64::from(node.bounds[k][i])));
-            let high = DVec3::from_array([3, 4, 5].map(|k| f64::from(node.bounds[k][i])));
+            let low = DVec3::from_array([0, 1, 2].map(|k| f64::from(sides[k][i])));
+            let high = DVec3::from_array([3, 4, 5].map(|k| f64::from(sides[k][i])));
             let gap = (low - self.from_center).max(self.from_center - high).max(DVec3::ZERO);
             // A few ulps less, for what was rounded; infinite beyond single precision, as the limit is.
             rounded_down(gap.length_squared() * (1.0 - 1e-14))
