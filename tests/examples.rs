@@ -8,6 +8,8 @@ mod clean_import;
 mod make_sample;
 #[path = "../examples/one_ring.rs"]
 mod one_ring;
+#[path = "../examples/probe_part.rs"]
+mod probe_part;
 
 use std::path::Path;
 
@@ -46,4 +48,13 @@ fn clean_import_makes_the_broken_bracket_two_solids_and_tells_why() {
     {
         assert!(account.iter().any(|line| line.contains(kind)), "{kind}: {account:#?}");
     }
+}
+
+#[test]
+fn probe_part_measures_the_bracket_from_all_sides() {
+    let probe = probe_part::run(sample()).expect("runs");
+    assert!((probe.mass.volume - 20.0 * (40.0 * 6.0 + 6.0 * 24.0 + 8.0 * 8.0)).abs() < 1e-9);
+    // Two walls or none: what goes in comes out.
+    assert!(probe.walls.iter().all(|w| w.thickness > 0.0) && !probe.walls.is_empty());
+    assert!(probe.clearance > 0.0 && !probe.is_inside);
 }

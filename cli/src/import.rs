@@ -4,7 +4,7 @@ use crate::progress;
 use crate::session::{Failure, Phase, Session};
 use meshwright::cleanup::{CleanOptions, Weld, clean, index};
 use meshwright::io::{Limits, Loaded, read_file};
-use meshwright::{Control, IndexedMesh, Mesh, Outcome, Report, Step};
+use meshwright::{Control, IndexedMesh, Maps, Mesh, Outcome, Report, Step};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -21,10 +21,19 @@ pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure
 /// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one. Returns the mesh
 /// and what is to be told about the import.
 pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(Mesh, Value), Failure> {
+    mesh_with_maps(session, path, strict).map(|(mesh, _, import)| (mesh, import))
+}
+
+/// The same with the relations between the file's elements and the mesh's.
+pub(crate) fn mesh_with_maps(
+    session: &mut Session,
+    path: &Path,
+    strict: bool,
+) -> Result<(Mesh, Maps, Value), Failure> {
     let loaded = load(session, path)?;
     if strict {
-        return strict_mesh(session, &loaded)
-            .map(|mesh| (mesh, json!({ "notes": loaded.notes, "counts": {} })));
+        let (mesh, maps) = strict_mesh(session, &loaded)?;
+        return Ok((mesh, maps, json!({ "notes": loaded.notes, "counts": {} })));
     }
     let outcome = session.timed(Phase::Build, || {
         progress::shown(|hook| {
@@ -32,7 +41,8 @@ pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(
         })
     })?;
     say_changes(session, &outcome.report);
-    Ok((outcome.value, import_json(&loaded, &outcome.report)))
+    let import = import_json(&loaded, &outcome.report);
+    Ok((outcome.value, outcome.maps, import))
 }
 
 /// What the import changed, for `"import"`.
@@ -46,7 +56,7 @@ pub(crate) fn import_json(loaded: &Loaded, report: &Report) -> Value {
     })
 }
 
-fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> {
+fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<(Mesh, Maps), Failure> {
     let indexed = session.timed(Phase::Build, || index(&loaded.soup, Weld::Exact))?;
     let refuse = |message: String, defects: Value| {
         let json = Map::from_iter([("defects".to_owned(), defects)]);
@@ -57,9 +67,10 @@ fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> 
         let message = format!("not a valid vertex pool: {} at {} and {more} more", first.kind, first.element);
         return refuse(message, json!(indexed.report.records));
     }
-    session
-        .timed(Phase::Build, || Mesh::build(&indexed.value))
-        .or_else(|error| refuse(error.to_string(), json!(error.defects)))
+    match session.timed(Phase::Build, || Mesh::build(&indexed.value)) {
+        Ok(mesh) => Ok((mesh, indexed.maps)),
+        Err(error) => refuse(error.to_string(), json!(error.defects)),
+    }
 }
 
 /// Reads a file and welds it, whatever its state.
