@@ -39,6 +39,7 @@ mod key;
 mod matching;
 mod mesh;
 mod parallel;
+mod query;
 mod report;
 mod soup;
 mod topology;
@@ -73,6 +74,10 @@ pub use glam;
 pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
+pub use query::{
+    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, QueryError, Ray,
+    RayError, RayHit, Side, SolidIndex,
+};
 pub use report::{
     Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
     Step, StepSummary,

@@ -16,6 +16,8 @@ mod make_sample;
 mod one_ring;
 #[path = "../examples/poke_and_flip.rs"]
 mod poke_and_flip;
+#[path = "../examples/probe_part.rs"]
+mod probe_part;
 #[path = "../examples/select_features.rs"]
 mod select_features;
 #[path = "../examples/undo.rs"]
@@ -127,4 +129,13 @@ fn undo_goes_back_and_forth() {
     editor.apply(Box::new(undo::poke)).expect("a face");
     editor.apply(Box::new(undo::poke)).expect("a face");
     assert_eq!(editor.mesh.to_indexed(), after);
+}
+
+#[test]
+fn probe_part_measures_the_bracket_from_all_sides() {
+    let probe = probe_part::run(sample()).expect("runs");
+    assert!((probe.mass.volume - 20.0 * (40.0 * 6.0 + 6.0 * 24.0 + 8.0 * 8.0)).abs() < 1e-9);
+    // Two walls or none: what goes in comes out.
+    assert!(probe.walls.iter().all(|w| w.thickness > 0.0) && !probe.walls.is_empty());
+    assert!(probe.clearance > 0.0 && !probe.is_inside);
 }

@@ -54,6 +54,10 @@ pub(crate) enum Command {
     Deform(Deform),
     /// Measure the enclosed volume, the area and the centroid
     Volume(Volume),
+    /// Cast a ray, and list where it meets the surface
+    Raycast(Raycast),
+    /// Find what is nearest to a point
+    Closest(Closest),
 }
 
 /// A file that is looked at as it is.
@@ -256,6 +260,73 @@ pub(crate) struct Volume {
     pub(crate) file: PathBuf,
     #[command(flatten)]
     pub(crate) strict: Strict,
+}
+
+/// Arguments of `raycast`.
+#[derive(Debug, Args)]
+pub(crate) struct Raycast {
+    /// The file
+    pub(crate) file: PathBuf,
+    /// Where the ray begins
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, required_unless_present = "queries", requires = "direction")]
+    pub(crate) origin: Option<Triple>,
+    /// Where it goes; its length is the unit of t
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, required_unless_present = "queries", requires = "origin")]
+    pub(crate) direction: Option<Triple>,
+    /// Only the first hit
+    #[arg(long)]
+    pub(crate) first: bool,
+    /// Many rays: a file of lines of six numbers, origin and direction, separated by commas
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["origin", "direction"])]
+    pub(crate) queries: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) strict: Strict,
+}
+
+/// Arguments of `closest`.
+#[derive(Debug, Args)]
+pub(crate) struct Closest {
+    /// The file
+    pub(crate) file: PathBuf,
+    /// The point
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, required_unless_present = "queries")]
+    pub(crate) point: Option<Triple>,
+    /// What to look for
+    #[arg(long, value_enum)]
+    pub(crate) to: Target,
+    /// Nothing farther than this; if nothing is left the answer is "no"
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) max_distance: Option<f64>,
+    /// Many points: a file of lines of three numbers separated by commas
+    #[arg(long, value_name = "FILE", conflicts_with = "point")]
+    pub(crate) queries: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) strict: Strict,
+}
+
+/// What can be nearest.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Target {
+    /// A vertex, whether a face names it or not
+    Vertex,
+    /// A point on an edge
+    Edge,
+    /// A face by its nearest point
+    Face,
+    /// A face by the mean of its corners
+    FaceCenter,
+    /// A point of the surface
+    Surface,
+}
+
+/// Three numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triple(pub(crate) [f64; 3]);
+
+fn triple(word: &str) -> Result<Triple, String> {
+    let numbers: Result<Vec<f64>, _> = word.split(',').map(|n| n.trim().parse()).collect();
+    let triple = numbers.ok().and_then(|n| n.try_into().ok());
+    triple.map(Triple).ok_or_else(|| "three numbers separated by commas".to_owned())
 }
 
 /// What is done about a file that is no manifold.

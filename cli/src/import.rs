@@ -4,7 +4,7 @@ use crate::progress;
 use crate::session::{Failure, Phase, Session};
 use meshwright::cleanup::{CleanError, CleanOptions, Weld, clean, clean_indexed, index};
 use meshwright::io::{Limits, Loaded, read_file};
-use meshwright::{Control, IndexedMesh, LostValue, Mesh, Outcome, PolygonSoup, Report, Step};
+use meshwright::{Control, IndexedMesh, LostValue, Maps, Mesh, Outcome, PolygonSoup, Report, Step};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -21,6 +21,15 @@ pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure
 /// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one. Returns the mesh
 /// and what is to be told about the import.
 pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(Mesh, Value), Failure> {
+    mesh_with_maps(session, path, strict).map(|(mesh, _, import)| (mesh, import))
+}
+
+/// The same with the relations between the file's elements and the mesh's.
+pub(crate) fn mesh_with_maps(
+    session: &mut Session,
+    path: &Path,
+    strict: bool,
+) -> Result<(Mesh, Maps, Value), Failure> {
     import(session, path, strict, clean, |(_, mesh)| mesh)
 }
 
@@ -30,7 +39,7 @@ pub(crate) fn pool(
     path: &Path,
     strict: bool,
 ) -> Result<(IndexedMesh, Value), Failure> {
-    import(session, path, strict, clean_indexed, |(pool, _)| pool)
+    import(session, path, strict, clean_indexed, |(pool, _)| pool).map(|(pool, _, import)| (pool, import))
 }
 
 fn import<T>(
@@ -39,11 +48,11 @@ fn import<T>(
     strict: bool,
     clean: impl FnOnce(&PolygonSoup, CleanOptions<'_>) -> Result<Outcome<T>, CleanError>,
     choose: impl FnOnce((IndexedMesh, Mesh)) -> T,
-) -> Result<(T, Value), Failure> {
+) -> Result<(T, Maps, Value), Failure> {
     let loaded = load(session, path)?;
     if strict {
-        let (pool, mesh, report) = strict_mesh(session, &loaded)?;
-        return Ok((choose((pool, mesh)), import_json(&loaded, &report)));
+        let (pool, mesh, maps, report) = strict_mesh(session, &loaded)?;
+        return Ok((choose((pool, mesh)), maps, import_json(&loaded, &report)));
     }
     let outcome = session.timed(Phase::Build, || {
         progress::shown(|hook| {
@@ -51,7 +60,8 @@ fn import<T>(
         })
     })?;
     say_changes(session, &outcome.report);
-    Ok((outcome.value, import_json(&loaded, &outcome.report)))
+    let import = import_json(&loaded, &outcome.report);
+    Ok((outcome.value, outcome.maps, import))
 }
 
 /// What the import changed, for `"import"`.
@@ -66,7 +76,7 @@ pub(crate) fn import_json(loaded: &Loaded, report: &Report) -> Value {
     })
 }
 
-fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<(IndexedMesh, Mesh, Report), Failure> {
+fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<(IndexedMesh, Mesh, Maps, Report), Failure> {
     let indexed = session.timed(Phase::Build, || index(&loaded.soup, Weld::Exact))?;
     let refuse = |message: String, defects: Value| {
         let json = Map::from_iter([("defects".to_owned(), defects)]);
@@ -79,7 +89,7 @@ fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<(IndexedMesh, M
     }
     say_changes(session, &indexed.report);
     match session.timed(Phase::Build, || Mesh::build(&indexed.value)) {
-        Ok(mesh) => Ok((indexed.value, mesh, indexed.report)),
+        Ok(mesh) => Ok((indexed.value, mesh, indexed.maps, indexed.report)),
         Err(error) => refuse(error.to_string(), json!(error.defects)),
     }
 }

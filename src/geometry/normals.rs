@@ -31,7 +31,7 @@ pub(crate) fn double_area_vector(points: impl Iterator<Item = DVec3>) -> DVec3 {
 }
 
 /// The angle at `b` between the edges to `a` and `c`, in radians.
-fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+pub(crate) fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let (u, v) = (direction(a - b), direction(c - b));
     // Kahan: exact to rounding for every angle, where acos loses half the digits.
     2.0 * (u - v).length().atan2((u + v).length())

@@ -47,7 +47,12 @@ impl Igl {
 
     /// Asks about a mesh; its polygons must be triangles.
     pub(crate) fn ask(&mut self, mesh: &IndexedMesh) -> Opinion {
-        self.call(mesh, "facts")
+        self.ask_about(mesh, &[])
+    }
+
+    /// Asks about a mesh and points near it.
+    pub(crate) fn ask_about(&mut self, mesh: &IndexedMesh, points: &[DVec3]) -> Opinion {
+        self.send(mesh, points, "facts")
     }
 
     /// Asks for another mesh: `loop1` is one level of `igl.loop`, `upsample2` two of `igl.upsample`.
@@ -63,12 +68,18 @@ impl Igl {
 
     /// Asks with a call that the server knows.
     pub(crate) fn call(&mut self, mesh: &IndexedMesh, call: &str) -> Opinion {
+        self.send(mesh, &[], call)
+    }
+
+    fn send(&mut self, mesh: &IndexedMesh, points: &[DVec3], call: &str) -> Opinion {
         assert!(mesh.polygons().iter().all(|f| f.len() == 3), "libigl takes triangles");
-        let sizes =
-            serde_json::json!({ "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "call": call });
+        let sizes = serde_json::json!({
+            "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "points": points.len(), "call": call,
+        });
         let mut request = format!("{sizes}\n").into_bytes();
         request.extend(mesh.positions().iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
         request.extend(mesh.polygons().corners().iter().flat_map(|&c| i64::from(c).to_le_bytes()));
+        request.extend(points.iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
         let to = self.to.as_mut().expect("a pipe");
         // The child reads a whole request before it answers, so this cannot block both.
         to.write_all(&request).and_then(|()| to.flush()).expect("libigl's process is gone");

@@ -1,5 +1,6 @@
 //! The commands, each from its arguments to its answer.
 
+mod ask;
 mod bulk;
 mod change;
 mod clean;
@@ -16,6 +17,8 @@ pub(crate) fn run(command: &Command, session: &mut Session) -> Result<Answer, Fa
         Command::IsClosed(args) => look::is_closed(session, args),
         Command::NakedEdges(args) => look::naked_edges(session, args),
         Command::Volume(args) => look::volume(session, args),
+        Command::Raycast(args) => ask::raycast(session, args),
+        Command::Closest(args) => ask::closest(session, args),
         Command::Clean(args) => clean::clean(session, args),
         Command::Convert(args) => change::convert(session, args),
         Command::Flip(args) => change::flip(session, args),
