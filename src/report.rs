@@ -121,6 +121,8 @@ named! {
         CutEdges = "cut_edges",
         /// Splitting of vertices so that each has one fan.
         SplitVertices = "split_vertices",
+        /// Turning of whole parts outward.
+        TurnOutward = "turn_outward",
         /// Parting of sharp edges.
         Unweld = "unweld",
         /// Cutting of polygons into triangles by the shared rule.

@@ -125,6 +125,10 @@ pub(crate) struct Unify {
     pub(crate) output: Output,
     #[command(flatten)]
     pub(crate) weld: ExactWeld,
+    /// Then turn each part outward: closed parts by how deep they lie in others, so that cavities stay cavities; open
+    /// parts if their direction is sure enough
+    #[arg(long)]
+    pub(crate) outward: bool,
 }
 
 /// Arguments of `weld`.

@@ -17,15 +17,15 @@ pub(super) struct Carried {
 }
 
 impl Carried {
-    /// The soup's attributes that are not there where only some can be held.
-    pub(super) fn not_carried(&self, can_hold: impl Fn(Attribute) -> bool) -> Vec<Attribute> {
-        let gone = self.became.iter().filter(|(_, now)| !now.is_some_and(&can_hold));
+    /// The soup's attributes that are not there.
+    pub(super) fn not_carried(&self) -> Vec<Attribute> {
+        let gone = self.became.iter().filter(|(_, now)| now.is_none());
         gone.map(|(was, _)| *was).collect()
     }
 
     /// Single values that are not there, of attributes that are.
-    pub(super) fn lost_values(&self, can_hold: impl Fn(Attribute) -> bool) -> Vec<LostValue> {
-        let gone = self.not_carried(can_hold);
+    pub(super) fn lost_values(&self) -> Vec<LostValue> {
+        let gone = self.not_carried();
         self.lost.iter().filter(|l| !gone.contains(&l.attribute)).copied().collect()
     }
 

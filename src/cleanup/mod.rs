@@ -17,7 +17,7 @@ pub use weld::propose_tolerance;
 
 use crate::build::assemble;
 use crate::matching::{Chains, Matching, NONE};
-use crate::report::{Attribute, Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
+use crate::report::{Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
 use crate::topology::{FaceOf, duplicate_faces, flip_faces, next_corner, orient};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
 use carry::Carried;
@@ -116,7 +116,7 @@ pub enum CleanError {
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
     let cleaned = run(soup, options, |mesh| mesh)?;
     let (value, maps) = (cleaned.kept, cleaned.maps);
-    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried, |_| true), maps })
+    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried), maps })
 }
 
 /// As [`clean`], but gives the vertex pool that the mesh is built of, with all its attributes: for whoever writes the
@@ -145,7 +145,7 @@ pub fn clean_indexed(
 ) -> Result<Outcome<IndexedMesh>, CleanError> {
     let cleaned = run(soup, options, drop)?;
     let (value, maps) = (cleaned.indexed, cleaned.maps);
-    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried, |_| true), maps })
+    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried), maps })
 }
 
 /// What a clean-up arrives at: a pool, and what is kept of the mesh that was built of it.
@@ -201,10 +201,9 @@ fn run<M>(
     Ok(Cleaned { indexed, kept, carried, report: pool.report, maps })
 }
 
-/// The report with what a result that can hold these attributes does not have.
-fn tell(report: Report, carried: &Carried, can_hold: impl Fn(Attribute) -> bool + Copy) -> Report {
-    let (not_carried, lost_values) = (carried.not_carried(can_hold), carried.lost_values(can_hold));
-    Report { not_carried, lost_values, ..report }
+/// The report with what the result does not have of the soup's attributes.
+fn tell(report: Report, carried: &Carried) -> Report {
+    Report { not_carried: carried.not_carried(), lost_values: carried.lost_values(), ..report }
 }
 
 /// Makes a valid vertex pool of any soup: drops what is not finite, out of range or short, welds, and repairs faces
@@ -227,7 +226,7 @@ pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, Cle
     let mut carried = pool.carry_welded();
     let value = pool.lend(std::mem::take(&mut carried.attributes));
     let (report, maps) = pool.account(value.positions());
-    Ok(Outcome { value, report: tell(report, &carried, |_| true), maps })
+    Ok(Outcome { value, report: tell(report, &carried), maps })
 }
 
 /// Drops faces that are there already. Whether there were any.

@@ -53,9 +53,6 @@ pub enum NoteKind {
     /// Point and line elements; left out.
     #[error("points or lines, left out")]
     PointOrLine,
-    /// Facet normals, which the faces imply; left out.
-    #[error("facet normals, left out: the faces imply them")]
-    FacetNormal,
     /// Colours of faces; left out.
     #[error("face colours, left out")]
     FaceColor,

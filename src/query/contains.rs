@@ -144,7 +144,7 @@ impl<'m> SolidIndex<'m> {
 }
 
 /// A direction in the plane of no face that people draw.
-const SKEW: DVec3 = dvec3(0.883_211, 0.402_377, 0.241_093);
+pub(super) const SKEW: DVec3 = dvec3(0.883_211, 0.402_377, 0.241_093);
 
 /// The sum of the passings along a ray, `None` if its origin is on a triangle. `walk` counts triangles until the answer is
 /// known: until it is told `false`.

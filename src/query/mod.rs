@@ -10,6 +10,7 @@ mod exact;
 mod index;
 mod mass;
 mod nearest;
+mod outward;
 mod ray;
 mod side;
 
@@ -17,4 +18,5 @@ pub use closest::{ClosestOptions, ClosestPoint, Nearest, QueryError};
 pub use contains::{Side, SolidIndex};
 pub use index::{Feature, MeshIndex};
 pub use mass::MassProperties;
+pub use outward::{OutwardError, OutwardOptions, OutwardPart, TurnedOutward, orient_outward};
 pub use ray::{Crossing, Ray, RayError, RayHit};

@@ -4,9 +4,13 @@ use super::in_file;
 use super::look::fields;
 use crate::args::{Convert, Unify};
 use crate::session::{Answer, Failure, Phase, Session};
-use crate::{import, output};
-use meshwright::{IndexedMesh, Mesh, Report, unify_winding};
+use crate::{import, output, progress};
+use meshwright::{
+    Control, Element, IndexedMesh, Mesh, OutwardOptions, OutwardPart, Record, Report, orient_outward,
+    unify_winding,
+};
 use serde_json::{Map, json};
+use std::collections::BTreeSet;
 
 pub(super) fn convert(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
     import_change_write(session, args, |pool| pool)
@@ -76,17 +80,56 @@ pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failu
         let json = json!({ "orientable": false, "cycles": cycles });
         Failure::Refused { message: error.to_string(), json: fields(json) }
     })?;
-    let flipped = unified.report.records.iter().filter_map(|r| match r.element {
-        meshwright::Element::Face(f) => Some(in_file(faces, f)),
-        _ => None,
-    });
-    let mut flipped: Vec<u32> = flipped.collect();
+    let mut flipped = flipped_faces(&unified.report);
+    let mut value = unified.value;
+    let mut parts = None;
+    if args.outward {
+        let turned = session.timed(Phase::Run, || {
+            progress::shown(|hook| {
+                let options = OutwardOptions { control: Control::new(hook), ..Default::default() };
+                orient_outward(&value.topology(), options)
+            })
+        });
+        let turned = turned.map_err(Failure::refused)?;
+        // What was flipped twice is as it was.
+        flipped = flipped.symmetric_difference(&flipped_faces(&turned.outcome.report)).copied().collect();
+        value = turned.outcome.value;
+        parts = Some(turned.parts);
+    }
+    let mut flipped: Vec<u32> = flipped.into_iter().map(|f| in_file(faces, f)).collect();
     flipped.dedup();
-    let lost = output::write_mesh(session, &args.output, &unified.value.into())?;
+    let lost = output::write_mesh(session, &args.output, &value.into())?;
     let mut json = Map::from_iter([("orientable".to_owned(), json!(true))]);
     json.insert("flipped".to_owned(), json!(flipped));
     json.insert("lost".to_owned(), json!(lost));
     json.insert("import".to_owned(), import::import_json(&loaded, &outcome.report));
-    let text = format!("wrote {}: {} faces flipped\n", args.output.output.display(), flipped.len());
+    let mut text = String::new();
+    if let Some(parts) = parts {
+        for part in &parts {
+            text.push_str(&outward_line(in_file(faces, part.face), part));
+        }
+        let place = |part: &OutwardPart<u32>| OutwardPart { face: in_file(faces, part.face), ..*part };
+        json.insert("parts".to_owned(), json!(parts.iter().map(place).collect::<Vec<_>>()));
+    }
+    text.push_str(&format!("wrote {}: {} faces flipped\n", args.output.output.display(), flipped.len()));
     Ok(Answer { json, text, ..Answer::default() })
+}
+
+fn flipped_faces(report: &Report) -> BTreeSet<u32> {
+    let face = |r: &Record| match r.element {
+        Element::Face(f) => Some(f),
+        _ => None,
+    };
+    report.records.iter().filter_map(face).collect()
+}
+
+fn outward_line(face: u32, part: &OutwardPart<u32>) -> String {
+    let kind = match (part.closed, part.depth % 2) {
+        (false, _) => format!("open, direction {:.0} % sure", part.confidence * 100.0),
+        (true, _) if part.crosses => "closed, crosses another part".to_owned(),
+        (true, 0) => "solid".to_owned(),
+        (true, _) => "cavity".to_owned(),
+    };
+    let done = if part.reversed { "turned" } else { "left as it is" };
+    format!("part of {} faces from face {face}: {kind}, {done}\n", part.faces)
 }
