@@ -58,8 +58,8 @@ impl<'t> Probe<'t> {
             let node = &self.tree.nodes[at as usize];
             let distances = if self.is_far { self.far_distances(node) } else { self.distances(node) };
             let mut near = 0u32;
-            for i in 0..WIDTH {
-                near |= u32::from(distances[i] <= reach) << i;
+            for (i, &distance) in distances.iter().enumerate() {
+                near |= u32::from(distance <= reach) << i;
             }
             let bottom = stack.len();
             while near != 0 {
