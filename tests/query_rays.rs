@@ -94,11 +94,12 @@ fn follow(pool: &IndexedMesh, mesh: &Mesh, index: &meshwright::MeshIndex<'_>, r:
         let next = hits.get(i + 1).map_or(h.t + 1.0, |n| n.t);
         let middle = r.at((h.t + next) / 2.0);
         // On the surface, and a hair from it, the solid angle tells nothing.
-        if next - h.t > 1e-6 * next && !is_on(mesh, middle) {
-            if let Some(there) = winding(pool, middle) {
-                assert_eq!(inside, there, "after hit {i}: {}", context());
-                checked += 1;
-            }
+        if next - h.t > 1e-6 * next
+            && !is_on(mesh, middle)
+            && let Some(there) = winding(pool, middle)
+        {
+            assert_eq!(inside, there, "after hit {i}: {}", context());
+            checked += 1;
         }
     }
     assert_eq!(inside, 0, "outside at the end: {}", context());
