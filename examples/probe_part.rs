@@ -23,7 +23,7 @@ pub(crate) struct Probe {
     pub(crate) mass: MassProperties,
 }
 
-/// Looks along x through the middle of the box, and from a point above it.
+/// Looks along x through the centre of mass, and down on it from above.
 pub(crate) fn run(path: &Path) -> Result<Probe, Box<dyn Error>> {
     let mesh = clean(&read_file(path, &Limits::default())?.soup, CleanOptions::default())?.value;
     let bounds = mesh.to_indexed().bounds().ok_or("there is nothing to probe")?;
@@ -31,21 +31,23 @@ pub(crate) fn run(path: &Path) -> Result<Probe, Box<dyn Error>> {
     let solid = mesh.closed()?;
     let index = solid.index();
 
+    let mass = solid.mass_properties().ok_or("no volume")?;
+
     let size = bounds.max - bounds.min;
-    let origin = bounds.center() - DVec3::X * size.x;
+    let origin = mass.centroid - DVec3::X * size.x;
     let hits = index.index().hits(&Ray::new(origin, DVec3::X)?);
     // Touches change nothing, so entries and exits alternate.
     let crossings: Vec<_> = hits.iter().filter(|h| h.crossing != Crossing::Touch).collect();
     let wall = |pair: &[&meshwright::RayHit]| Wall { at: pair[0].point, thickness: pair[1].t - pair[0].t };
     let walls = crossings.chunks_exact(2).map(wall).collect();
 
-    let above = bounds.center() + DVec3::Z * size.z;
+    let above = mass.centroid + DVec3::Z * size.z;
     let nearest = index.index().closest_point(above, ClosestOptions::default())?;
     Ok(Probe {
         walls,
         clearance: nearest.ok_or("there are no faces")?.distance,
         is_inside: index.contains(above)? == Side::Inside,
-        mass: solid.mass_properties().ok_or("no volume")?,
+        mass,
     })
 }
 

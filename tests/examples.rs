@@ -135,7 +135,8 @@ fn undo_goes_back_and_forth() {
 fn probe_part_measures_the_bracket_from_all_sides() {
     let probe = probe_part::run(sample()).expect("runs");
     assert!((probe.mass.volume - 20.0 * (40.0 * 6.0 + 6.0 * 24.0 + 8.0 * 8.0)).abs() < 1e-9);
-    // Two walls or none: what goes in comes out.
-    assert!(probe.walls.iter().all(|w| w.thickness > 0.0) && !probe.walls.is_empty());
+    let walls: Vec<f64> = probe.walls.iter().map(|w| w.thickness).collect();
+    assert!(walls.len() == 2 && (walls[0] - 6.0).abs() < 1e-9 && (walls[1] - 8.0).abs() < 1e-9, "{walls:?}");
+    assert_eq!(probe.walls[0].at.x, 0.0);
     assert!(probe.clearance > 0.0 && !probe.is_inside);
 }

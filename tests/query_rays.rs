@@ -1,10 +1,12 @@
 //! Rays: exact, watertight, and in agreement with the winding number on the whole way.
 
+mod corpus;
 mod shapes;
 
 use meshwright::cleanup::{CleanOptions, clean};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{Crossing, Feature, IndexedMesh, Mesh, PolygonSoup, Polygons, Ray, RayError, RayHit};
+use proptest::prelude::*;
 use shapes::Noise;
 
 fn ray(origin: DVec3, direction: DVec3) -> Ray {
@@ -94,11 +96,12 @@ fn follow(pool: &IndexedMesh, mesh: &Mesh, index: &meshwright::MeshIndex<'_>, r:
         let next = hits.get(i + 1).map_or(h.t + 1.0, |n| n.t);
         let middle = r.at((h.t + next) / 2.0);
         // On the surface, and a hair from it, the solid angle tells nothing.
-        if next - h.t > 1e-6 * next && !is_on(mesh, middle) {
-            if let Some(there) = winding(pool, middle) {
-                assert_eq!(inside, there, "after hit {i}: {}", context());
-                checked += 1;
-            }
+        if next - h.t > 1e-6 * next
+            && !is_on(mesh, middle)
+            && let Some(there) = winding(pool, middle)
+        {
+            assert_eq!(inside, there, "after hit {i}: {}", context());
+            checked += 1;
         }
     }
     assert_eq!(inside, 0, "outside at the end: {}", context());
@@ -453,4 +456,94 @@ fn coplanar_touching_solids_are_left_and_entered() {
     let hits = mesh.index().hits(&ray(dvec3(-1., 0.5, 0.5), DVec3::X));
     assert_eq!(hits.iter().map(|h| h.t).collect::<Vec<_>>(), [1., 2., 2., 3.]);
     assert_eq!(crossings(&hits), 4);
+}
+
+#[test]
+fn real_parts_are_left_as_often_as_they_are_entered() {
+    let Some(rows) = corpus::rows() else { return };
+    let mut noise = Noise(6);
+    let mut cast = 0;
+    for row in rows.iter().filter(|r| r.is_readable()) {
+        let Ok(soup) = row.load() else { continue };
+        let mesh = clean(&soup, CleanOptions::default()).expect("always answers").value;
+        if mesh.face_count() > 100_000 || !mesh.is_closed() {
+            continue;
+        }
+        let index = mesh.index();
+        let vertices: Vec<DVec3> = mesh.vertices().map(|v| mesh.position(v)).collect();
+        let mut at = || vertices[noise.below(vertices.len() as u32) as usize];
+        let bounds = mesh.to_indexed().bounds().expect("faces");
+        let outside = bounds.max + (bounds.max - bounds.min) * 0.25;
+        for i in 0..60 {
+            // From outside through a vertex, a middle of two, or along an axis through a vertex.
+            let (target, origin) = match i % 3 {
+                0 => (at(), outside),
+                1 => ((at() + at()) / 2.0, outside),
+                _ => {
+                    let p = at();
+                    (p, dvec3(p.x, p.y, outside.z))
+                }
+            };
+            if target != origin {
+                let hits = index.hits(&ray(origin, target - origin));
+                let count = |c| hits.iter().filter(|h| h.crossing == c).count();
+                assert_eq!(count(Crossing::Enter), count(Crossing::Leave), "{}: {origin} {target}", row.path);
+                cast += 1;
+            }
+        }
+    }
+    assert!(cast > 1000, "{cast}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Corners on a small grid make touching, folded and overlapping faces; still everything that goes in comes out.
+    #[test]
+    fn any_closed_surface_is_crossed_as_its_winding_numbers_tell(
+        points in prop::collection::vec((-2i8..3, -2i8..3, -2i8..3), 8),
+        rays in prop::collection::vec(((-3i8..4, -3i8..4, -3i8..4), (-2i8..3, -2i8..3, -2i8..3)), 40),
+    ) {
+        let at = |(x, y, z): (i8, i8, i8)| dvec3(x.into(), y.into(), z.into());
+        let positions: Vec<DVec3> = points.into_iter().map(at).collect();
+        // The cube's faces over any eight points: closed, and often folded.
+        let faces = shapes::fanned(&shapes::cube()).polygons().clone();
+        let pool = IndexedMesh::new(positions, faces).expect("a pool");
+        let mesh = shapes::mesh(&pool);
+        let index = mesh.index();
+        let solid = mesh.closed().expect("closed").index();
+        for (o, d) in rays {
+            if d == (0, 0, 0) {
+                continue;
+            }
+            let r = ray(at(o), at(d));
+            let hits = index.hits(&r);
+            let net: i32 = hits.iter().map(|h| match h.crossing {
+                Crossing::Enter => -1,
+                Crossing::Leave => 1,
+                Crossing::Touch => 0,
+            }).sum();
+            // The skew ray of the winding number and this ray agree, though one meets edges and the other does not.
+            if let Some(inside) = solid.winding_number(r.origin()).expect("finite") {
+                prop_assert_eq!(net, inside);
+                prop_assert_eq!(winding(&pool, r.origin()).unwrap_or(inside), inside);
+            }
+            prop_assert_eq!(index.first_hit(&r), hits.first().copied());
+        }
+    }
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let pool = shapes::icosphere(5);
+    let mesh = shapes::mesh(&pool);
+    let mut noise = Noise(7);
+    let mut point = || dvec3(noise.unit(), noise.unit(), noise.unit()) * 4.0 - 2.0;
+    let rays: Vec<Ray> = (0..2000).map(|_| ray(point(), point())).collect();
+    let run = |threads| {
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        threads.install(|| mesh.index().hits_batch(&rays))
+    };
+    assert_eq!(run(1), run(4));
 }

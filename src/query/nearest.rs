@@ -58,8 +58,8 @@ impl<'t> Probe<'t> {
             let node = &self.tree.nodes[at as usize];
             let distances = if self.is_far { self.far_distances(node) } else { self.distances(node) };
             let mut near = 0u32;
-            for i in 0..WIDTH {
-                near |= u32::from(distances[i] <= reach) << i;
+            for (i, &distance) in distances.iter().enumerate() {
+                near |= u32::from(distance <= reach) << i;
             }
             let bottom = stack.len();
             while near != 0 {
@@ -168,20 +168,19 @@ pub(crate) fn triangle_foot(places: [DVec3; 3], order: [u32; 3], bound: f64) -> 
     if d6 >= 0.0 && d5 <= d6 {
         return Some(corner(2));
     }
-    let vc = d1 * d4 - d3 * d2;
+    // Areas by the normal: the products of d1 to d6 would lose their digits far away.
+    let (vb, vc) = (normal.dot(ac.cross(a)), normal.dot(a.cross(ab)));
+    let va = square - vb - vc;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
         return Some(edge_foot(places, order, 0));
     }
-    let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
         return Some(edge_foot(places, order, 1));
     }
-    let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
         return Some(edge_foot(places, order, 2));
     }
-    let inverse = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * inverse, vc * inverse);
+    let (v, w) = (vb / square, vc / square);
     let foot = a + ab * v + ac * w;
     Some(Foot { square: foot.length_squared(), weights: [1.0 - v - w, v, w], part: Part::Inside })
 }
