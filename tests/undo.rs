@@ -442,8 +442,7 @@ fn maps_of(mesh: &mut Mesh, edit: impl FnOnce(&mut Mesh)) -> Maps {
     let before = mesh.numbering();
     mesh.record_changes();
     edit(mesh);
-    let maps = Lineage::of(mesh.take_changes()).maps(&before, &mesh.numbering());
-    maps
+    Lineage::of(mesh.take_changes()).maps(&before, &mesh.numbering())
 }
 
 #[test]

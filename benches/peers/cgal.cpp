@@ -121,6 +121,7 @@ int main(int argc, char** argv) {
         }
         case Edit::collapse:
           if (!CGAL::Euler::does_satisfy_link_condition(e, m)) return false;
+          // Which end stays is its own choice, so the counts of what was done differ a little from the others.
           CGAL::Euler::collapse_edge(e, m);
           return true;
       }

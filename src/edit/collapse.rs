@@ -191,19 +191,31 @@ impl Mesh {
 
     /// No neighbour but the apexes is common to both ends, and no face but those beside the edge.
     fn check_shared(&self, a: u32, b: u32, apex: [u32; 2], beside: [u32; 2]) -> Result<(), CollapseError> {
-        let around = |v: u32| -> Slots {
-            let all = self.outgoing_slots(v).map(|h| self.origin[h as usize ^ 1]);
-            all.filter(|v| !apex.contains(v)).collect()
+        // The triangles that hold both ends are those beside the edge.
+        let large = |h: u32| {
+            let f = self.face[h as usize];
+            (f != NONE && !self.is_triangle(h) && !beside.contains(&f)).then_some(f)
         };
-        let faces = |v: u32| -> Slots {
-            // The triangles that hold both ends are those beside the edge.
-            let large = self.outgoing_slots(v).filter(|&h| !self.is_open(h) && !self.is_triangle(h));
-            large.map(|h| self.face[h as usize]).filter(|f| !beside.contains(f)).collect()
-        };
-        if let Some(v) = common(around(a), around(b)) {
+        let (mut near, mut faces) = (Slots::new(), Slots::new());
+        for h in self.outgoing_slots(b) {
+            near.push(self.target_slot(h));
+            faces.extend(large(h));
+        }
+        let is_long = near.len() > 16;
+        if is_long {
+            near.sort_unstable();
+            faces.sort_unstable();
+        }
+        let has =
+            |list: &Slots, x: u32| if is_long { list.binary_search(&x).is_ok() } else { list.contains(&x) };
+        let neighbors = self.outgoing_slots(a).map(|h| self.target_slot(h));
+        if let Some(v) = neighbors.filter(|v| !apex.contains(v)).find(|&v| has(&near, v)) {
             return Err(CollapseError::CommonNeighbor(self.vertices.key(v)));
         }
-        match common(faces(a), faces(b)) {
+        if faces.is_empty() {
+            return Ok(());
+        }
+        match self.outgoing_slots(a).filter_map(large).find(|&f| has(&faces, f)) {
             Some(f) => Err(CollapseError::CommonFace(self.faces.key(f))),
             None => Ok(()),
         }
@@ -369,13 +381,4 @@ fn run<'a>(
         .map(|(&h, _)| h)
         .collect();
     same.into_iter()
-}
-
-/// What both lists hold. Sorted first if they are long.
-fn common(a: Slots, mut b: Slots) -> Option<u32> {
-    if a.len() * b.len() <= 256 {
-        return a.into_iter().find(|v| b.contains(v));
-    }
-    b.sort_unstable();
-    a.into_iter().find(|v| b.binary_search(v).is_ok())
 }
