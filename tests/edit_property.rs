@@ -5,8 +5,9 @@ mod drive;
 
 use arbitrary::{Arbitrary, Unstructured};
 use drive::shapes::{Noise, grid, icosphere, torus};
-use drive::{Edit, Place, Script, Start, World, run};
-use meshwright::{IndexedMesh, Mesh};
+use drive::{Edit, Op, Place, Script, Start, World, run};
+use meshwright::glam::{DVec2, DVec3};
+use meshwright::{IndexedMesh, Mesh, Rule};
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_oneof, proptest};
 use std::collections::BTreeMap;
 
@@ -141,6 +142,100 @@ fn every_operator_is_done_at_least_every_fifth_time_on_suitable_starts() {
         assert!(*tried > 200 && done * 5 >= *tried, "{name}: {done} of {tried}");
     }
     assert_eq!(all.len(), 18);
+}
+
+/// Every operator on every element, and on every pair or triple that could fit.
+fn try_everything(world: &World) {
+    let mesh = &world.mesh;
+    let at = DVec3::new(0.3, 0.2, 0.1);
+    for v in mesh.vertices() {
+        [Op::RemoveVertex(v), Op::DissolveVertex(v)].iter().for_each(|op| world.try_out(op));
+    }
+    for e in mesh.edges() {
+        let ops = [
+            Op::RemoveEdge(e),
+            Op::SplitEdge(e, at),
+            Op::SplitEdgeAndFaces(e, at),
+            Op::FlipEdge(e),
+            Op::JoinFaces(e),
+        ];
+        ops.iter().for_each(|op| world.try_out(op));
+    }
+    for f in mesh.faces() {
+        let ops = [Op::RemoveFace(f), Op::PokeFace(f, at), Op::TriangulateFace(f), Op::ReverseComponent(f)];
+        ops.iter().for_each(|op| world.try_out(op));
+    }
+    for h in mesh.halfedges() {
+        [Op::Collapse(h, at), Op::FillHole(h)].iter().for_each(|op| world.try_out(op));
+        for g in mesh.loop_of(h) {
+            world.try_out(&Op::SplitFace(h, g));
+        }
+        for g in mesh.outgoing(mesh.origin(h)) {
+            world.try_out(&Op::SplitVertex(h, g, at));
+        }
+    }
+    let boundary: Vec<_> = mesh.boundary_halfedges().collect();
+    for &h in &boundary {
+        boundary.iter().for_each(|&g| world.try_out(&Op::Stitch(h, g)));
+        for x in mesh.vertices() {
+            let (a, b, c) = (mesh.origin(h), mesh.target(h), mesh.target(mesh.next(h)));
+            world.try_out(&Op::AddFace(vec![a, b, x]));
+            world.try_out(&Op::AddFace(vec![a, b, c, x]));
+            world.try_out(&Op::AddFace(vec![b, a, x]));
+        }
+    }
+    let vertices: Vec<_> = mesh.vertices().take(6).collect();
+    for (i, j, k) in (0..6).flat_map(|i| (0..6).flat_map(move |j| (0..6).map(move |k| (i, j, k)))) {
+        if let (Some(&a), Some(&b), Some(&c)) = (vertices.get(i), vertices.get(j), vertices.get(k)) {
+            world.try_out(&Op::AddFace(vec![a, b, c]));
+        }
+    }
+}
+
+#[test]
+fn every_operator_is_exact_on_every_element_of_every_start_and_after_a_few_edits() {
+    let mut noise = Noise(7);
+    for start in Start::ALL {
+        try_everything(&World::new(start.build()));
+        for _ in 0..6 {
+            let mut world = World::new(start.build());
+            for i in 0..8 {
+                world.step(i, &random_edit(&mut noise, None), true);
+            }
+            try_everything(&world);
+        }
+    }
+}
+
+#[test]
+fn values_stay_numbers_wherever_a_vertex_is_put() {
+    let far = [1e300, -1e308, f64::MAX, 1e-320, 0.0];
+    for start in [Start::Triangle, Start::Cube, Start::Mixed, Start::Grid] {
+        for (x, y) in far.iter().flat_map(|&x| far.iter().map(move |&y| (x, y))) {
+            let at = DVec3::new(x, y, -x);
+            let mut mesh = start.build();
+            let heat = mesh.add_vertex_column(0.5, Rule::<f64>::interpolate());
+            let uv = mesh.add_corner_column(DVec2::ONE, Rule::interpolate());
+            let e = mesh.edges().next().expect("an edge");
+            mesh.split_edge(e, at).expect("any edge can be split");
+            let f = mesh.faces().next().expect("a face");
+            let middle = mesh.poke_face(f, at).expect("any face can be poked").vertex;
+            let _ = mesh.dissolve_vertex(middle);
+            let f = mesh.faces().last().expect("a face");
+            mesh.poke_face(f, at).expect("any face can be poked");
+            let around: Vec<_> = mesh.halfedges().collect();
+            for h in around {
+                let _ = mesh.get_origin(h).map(|_| mesh.collapse_to_midpoint(h));
+            }
+            assert_eq!(mesh.validate(), Ok(()));
+            for v in mesh.vertices() {
+                assert!(!mesh.value(heat, v).is_nan(), "{start:?} {at}");
+            }
+            for h in mesh.halfedges() {
+                assert!(!mesh.value(uv, h).is_nan(), "{start:?} {at}");
+            }
+        }
+    }
 }
 
 /// Thousands of edits, without the twin.

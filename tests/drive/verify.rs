@@ -149,6 +149,21 @@ impl World {
         }
     }
 
+    /// Verifies one operator on a copy.
+    pub(crate) fn try_out(&self, op: &Op) {
+        let mut copy = Self {
+            mesh: self.mesh.clone(),
+            tally: BTreeMap::new(),
+            data: self.data,
+            seen: Graveyard::default(),
+            marks: Vec::new(),
+            record: None,
+        };
+        if let Err(what) = copy.verified(0, Edit::Forget, op) {
+            panic!("{what}");
+        }
+    }
+
     fn count(&mut self, op: &Op, done: bool) {
         let tally = self.tally.entry(op.name()).or_default();
         tally[0] += 1;
