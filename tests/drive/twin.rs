@@ -1,0 +1,649 @@
+//! The naive twin of the operators: what each one's documentation promises, worked out on plain lists of faces, and
+//! accepted if the lists build a mesh from nothing that keeps the promises.
+
+use super::Op;
+use meshwright::glam::DVec3;
+use meshwright::{EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, VertexKey};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// An element of the mesh before, or the i-th that the operator's result names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Id<K> {
+    Old(K),
+    New(usize),
+}
+use Id::{New, Old};
+
+impl<K: Copy> Id<K> {
+    /// The key, given those that the result names.
+    pub(crate) fn key(self, named: &[K]) -> K {
+        match self {
+            Old(key) => key,
+            New(i) => named[i],
+        }
+    }
+}
+
+pub(crate) type V = Id<VertexKey>;
+pub(crate) type E = Id<EdgeKey>;
+pub(crate) type F = Id<FaceKey>;
+
+/// A mesh as plain lists.
+#[derive(Clone, Debug)]
+pub(crate) struct Plain {
+    pub(crate) at: BTreeMap<V, DVec3>,
+    /// From the first corner.
+    pub(crate) faces: BTreeMap<F, Vec<V>>,
+    /// From where to where each edge's half-edge runs.
+    pub(crate) edges: BTreeMap<E, [V; 2]>,
+}
+
+/// How many there are of what topology counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub(crate) euler: i64,
+    pub(crate) loops: i64,
+    pub(crate) components: i64,
+    pub(crate) isolated: i64,
+}
+
+/// What an operator should leave behind.
+#[derive(Clone, Debug)]
+pub(crate) struct After {
+    pub(crate) plain: Plain,
+    /// How the counts change, if the documentation says.
+    change: Option<Counts>,
+    /// Corners that hold what another held before; all that were there before and are not mixed keep theirs.
+    pub(crate) corners: Vec<((F, V), (FaceKey, VertexKey))>,
+    pub(crate) mixed_corners: BTreeSet<(F, V)>,
+    pub(crate) mixed_vertices: BTreeSet<V>,
+    pub(crate) mixed_edges: BTreeSet<E>,
+    pub(crate) mixed_faces: BTreeSet<F>,
+}
+
+const SAME: Counts = Counts { euler: 0, loops: 0, components: 0, isolated: 0 };
+
+/// Without the half-edges of edges.
+fn around(cycle: &[V]) -> impl Iterator<Item = (V, V)> {
+    (0..cycle.len()).map(|i| (cycle[i], cycle[(i + 1) % cycle.len()]))
+}
+
+fn rotated(cycle: &[V], first: V) -> Vec<V> {
+    let at = cycle.iter().position(|&v| v == first).expect("a corner of the face");
+    cycle[at..].iter().chain(&cycle[..at]).copied().collect()
+}
+
+impl Plain {
+    pub(crate) fn of(mesh: &Mesh) -> Self {
+        let cycle = |f| mesh.face_vertices(f).map(Old).collect();
+        let ends = |e| mesh.edge_halfedge(e);
+        Self {
+            at: mesh.vertices().map(|v| (Old(v), mesh.position(v))).collect(),
+            faces: mesh.faces().map(|f| (Old(f), cycle(f))).collect(),
+            edges: mesh
+                .edges()
+                .map(|e| (Old(e), [Old(mesh.origin(ends(e))), Old(mesh.target(ends(e)))]))
+                .collect(),
+        }
+    }
+
+    /// The face on the left of each directed edge.
+    fn left(&self) -> BTreeMap<(V, V), F> {
+        self.faces.iter().flat_map(|(&f, cycle)| around(cycle).map(move |ends| (ends, f))).collect()
+    }
+
+    /// The boundary: where each half-edge without a face leads, by its origin.
+    fn boundary(&self) -> BTreeMap<V, V> {
+        let left = self.left();
+        left.keys().filter(|&&(a, b)| !left.contains_key(&(b, a))).map(|&(a, b)| (b, a)).collect()
+    }
+
+    pub(crate) fn counts(&self) -> Counts {
+        let mut root: BTreeMap<V, V> = BTreeMap::new();
+        fn find(root: &BTreeMap<V, V>, mut v: V) -> V {
+            while root[&v] != v {
+                v = root[&v];
+            }
+            v
+        }
+        let mut pairs = BTreeSet::new();
+        for cycle in self.faces.values() {
+            for (a, b) in around(cycle) {
+                pairs.insert((a.min(b), a.max(b)));
+                root.entry(a).or_insert(a);
+                root.entry(b).or_insert(b);
+                let (a, b) = (find(&root, a), find(&root, b));
+                root.insert(a.max(b), a.min(b));
+            }
+        }
+        let mut next = self.boundary();
+        let mut loops = 0;
+        while let Some((_, mut to)) = next.pop_first() {
+            loops += 1;
+            while let Some(further) = next.remove(&to) {
+                to = further;
+            }
+        }
+        Counts {
+            euler: self.at.len() as i64 - pairs.len() as i64 + self.faces.len() as i64,
+            loops,
+            components: root.iter().filter(|(v, r)| v == r).count() as i64,
+            isolated: self.at.len() as i64 - root.len() as i64,
+        }
+    }
+
+    /// Whether the lists build a mesh, with just the edges they name.
+    fn builds(&self) -> Result<(), String> {
+        let number: BTreeMap<V, u32> = self.at.keys().copied().zip(0..).collect();
+        let cycle = |c: &Vec<V>| c.iter().map(|v| number[v]).collect::<Vec<_>>();
+        let faces = self.faces.values().map(cycle).collect();
+        let pool = IndexedMesh::new(self.at.values().copied().collect(), faces)
+            .map_err(|e| format!("{:?}", e.defects))?;
+        Mesh::build(&pool).map_err(|e| format!("{:?}", e.defects))?;
+        let mut named: Vec<_> = self.edges.values().map(|&[a, b]| (a.min(b), a.max(b))).collect();
+        named.sort_unstable();
+        let used: BTreeSet<_> =
+            self.faces.values().flat_map(|c| around(c)).map(|(a, b)| (a.min(b), a.max(b))).collect();
+        match named.iter().eq(&used) {
+            true => Ok(()),
+            false => Err(format!("edges {named:?}, but faces have {used:?}")),
+        }
+    }
+
+    /// Renames vertices in faces and edges.
+    fn rename(&mut self, name: impl Fn(V) -> V) {
+        self.faces
+            .values_mut()
+            .flatten()
+            .chain(self.edges.values_mut().flatten())
+            .for_each(|v| *v = name(*v));
+    }
+
+    fn edge_between(&self, a: V, b: V) -> Option<E> {
+        self.edges.iter().find(|(_, ends)| **ends == [a, b] || **ends == [b, a]).map(|(&e, _)| e)
+    }
+
+    /// The targets of the edges at a vertex, clockwise; from the boundary half-edge if there is one.
+    fn clockwise(&self, v: V) -> Vec<V> {
+        let boundary = self.boundary();
+        let before: BTreeMap<V, V> = self
+            .faces
+            .values()
+            .filter(|c| c.contains(&v))
+            .map(|c| {
+                let c = rotated(c, v);
+                (c[c.len() - 1], c[1])
+            })
+            .collect();
+        let Some(first) = boundary.get(&v).or(before.keys().next()).copied() else { return Vec::new() };
+        let mut order = vec![first];
+        // Clockwise after `n` comes what follows n -> v in its face.
+        while let Some(&n) = before.get(&order[order.len() - 1])
+            && n != first
+        {
+            order.push(n);
+        }
+        order
+    }
+}
+
+impl After {
+    fn new(plain: Plain, change: Option<Counts>) -> Self {
+        Self {
+            plain,
+            change,
+            corners: Vec::new(),
+            mixed_corners: BTreeSet::new(),
+            mixed_vertices: BTreeSet::new(),
+            mixed_edges: BTreeSet::new(),
+            mixed_faces: BTreeSet::new(),
+        }
+    }
+
+    /// Corners of a new face at old vertices hold what they held in the old face.
+    fn carry(&mut self, to: F, from: FaceKey) {
+        for &v in &self.plain.faces[&to] {
+            if let Old(key) = v {
+                self.corners.push(((to, v), (from, key)));
+            }
+        }
+    }
+}
+
+/// The states that the documentation of the operator allows it to leave; or why it must refuse.
+pub(crate) fn expect(mesh: &Mesh, op: &Op) -> Result<Vec<After>, String> {
+    let before = Plain::of(mesh);
+    let all = after(mesh, &before, op).ok_or("dead or unfit elements")?;
+    let first = &all[0];
+    first.plain.builds()?;
+    if let Some(change) = first.change {
+        let (old, new) = (before.counts(), first.plain.counts());
+        let got = Counts {
+            euler: new.euler - old.euler,
+            loops: new.loops - old.loops,
+            components: new.components - old.components,
+            isolated: new.isolated - old.isolated,
+        };
+        if got != change {
+            return Err(format!("counts change by {got:?}"));
+        }
+    }
+    Ok(all)
+}
+
+fn ends(mesh: &Mesh, h: HalfedgeKey) -> Option<[V; 2]> {
+    Some([Old(mesh.get_origin(h)?), Old(mesh.get_target(h)?)])
+}
+
+fn old_face(f: F) -> FaceKey {
+    f.key(&[])
+}
+
+fn after(mesh: &Mesh, before: &Plain, op: &Op) -> Option<Vec<After>> {
+    let mut p = before.clone();
+    let left = before.left();
+    Some(match *op {
+        Op::AddVertex(position) => {
+            p.at.insert(New(0), position);
+            vec![After::new(p, Some(Counts { euler: 1, isolated: 1, ..SAME }))]
+        }
+        Op::AddFace(ref corners) => {
+            let cycle: Vec<V> = corners.iter().map(|&v| Old(v)).collect();
+            if !cycle.iter().all(|v| p.at.contains_key(v)) || cycle.is_empty() {
+                return None;
+            }
+            let mut born = 0;
+            for (a, b) in around(&cycle) {
+                if p.edge_between(a, b).is_none() {
+                    p.edges.insert(New(born), [a, b]);
+                    born += 1;
+                }
+            }
+            p.faces.insert(New(0), cycle);
+            vec![After::new(p, None)]
+        }
+        Op::RemoveFace(f) => {
+            p.faces.remove(&Old(f))?;
+            vec![After::new(without_bare_edges(p), None)]
+        }
+        Op::RemoveEdge(e) => {
+            let [a, b] = p.edges[p.edges.get_key_value(&Old(e))?.0];
+            for f in [left.get(&(a, b)), left.get(&(b, a))].into_iter().flatten() {
+                p.faces.remove(f);
+            }
+            vec![After::new(without_bare_edges(p), None)]
+        }
+        Op::RemoveVertex(v) => {
+            p.at.remove(&Old(v))?;
+            p.faces.retain(|_, c| !c.contains(&Old(v)));
+            vec![After::new(without_bare_edges(p), None)]
+        }
+        Op::SplitEdge(e, position) => {
+            put_on_edge(&mut p, e, position)?;
+            vec![After::new(p, Some(SAME))]
+        }
+        Op::SplitEdgeAndFaces(e, position) => {
+            let [a, b] = *before.edges.get(&Old(e))?;
+            put_on_edge(&mut p, e, position)?;
+            let m = New(0);
+            let mut cuts = Vec::new();
+            for ends in [(a, b), (b, a)] {
+                let Some(&f) = left.get(&ends).filter(|f| before.faces[f].len() == 3) else { continue };
+                let c = rotated(&p.faces[&f], m);
+                let apex = c[2];
+                p.faces.insert(f, keeping_first(before, f, vec![m, c[1], apex]));
+                p.faces.insert(New(cuts.len()), vec![apex, c[3], m]);
+                p.edges.insert(New(cuts.len() + 1), [m, apex]);
+                cuts.push(f);
+            }
+            let mut after = After::new(p, Some(SAME));
+            for (i, f) in cuts.into_iter().enumerate() {
+                after.carry(New(i), old_face(f));
+            }
+            vec![after]
+        }
+        Op::SplitFace(from, to) => {
+            let ([a, a_next], [b, b_next]) = (ends(mesh, from)?, ends(mesh, to)?);
+            let f = *left.get(&(a, a_next))?;
+            if left.get(&(b, b_next)) != Some(&f) || a == b {
+                return None;
+            }
+            let c = rotated(&p.faces[&f], a);
+            let at = c.iter().position(|&v| v == b)?;
+            p.faces.insert(f, keeping_first(before, f, c[..=at].to_vec()));
+            p.faces.insert(New(0), c[at..].iter().chain([&a]).copied().collect());
+            p.edges.insert(New(0), [a, b]);
+            let mut after = After::new(p, Some(SAME));
+            after.carry(New(0), old_face(f));
+            vec![after]
+        }
+        Op::PokeFace(f, position) => {
+            let c = p.faces.get(&Old(f))?.clone();
+            p.at.insert(New(0), position);
+            for (i, (a, b)) in around(&c).enumerate() {
+                p.faces.insert(if i == 0 { Old(f) } else { New(i - 1) }, vec![a, b, New(0)]);
+                p.edges.insert(New(i), [a, New(0)]);
+            }
+            let mut after = After::new(p, Some(SAME));
+            (1..c.len()).for_each(|i| after.carry(New(i - 1), f));
+            after.carry(Old(f), f);
+            vec![after]
+        }
+        Op::SplitVertex(first, last, position) => {
+            let ([v, first], [w, last]) = (ends(mesh, first)?, ends(mesh, last)?);
+            if v != w {
+                return None;
+            }
+            let spokes = before.clockwise(v);
+            let at = spokes.iter().position(|&n| n == first)?;
+            let order: Vec<V> = spokes[at..].iter().chain(&spokes[..at]).copied().collect();
+            let moved = &order[..=order.iter().position(|&n| n == last)?];
+            if moved.len() == order.len() {
+                return None;
+            }
+            p.at.insert(New(0), position);
+            let mut carried = Vec::new();
+            for (&f, cycle) in p.faces.iter_mut().filter(|(_, c)| c.contains(&v)) {
+                let c = rotated(cycle, v);
+                let corner = match (moved.contains(&c[c.len() - 1]), moved.contains(&c[1])) {
+                    (true, true) => vec![New(0)],
+                    (false, true) => vec![v, New(0)],
+                    (true, false) => vec![New(0), v],
+                    (false, false) => vec![v],
+                };
+                if corner.contains(&New(0)) {
+                    carried.push(((f, New(0)), (old_face(f), v.key(&[]))));
+                }
+                let mut new = corner;
+                new.extend(&c[1..]);
+                // A first corner at the vertex stays a corner at it if there is one.
+                let was = cycle[0];
+                *cycle = if new.contains(&was) { rotated(&new, was) } else { new };
+            }
+            for ends in p.edges.values_mut().filter(|e| e.contains(&v)) {
+                if ends.iter().any(|n| moved.contains(n)) {
+                    ends.iter_mut().filter(|n| **n == v).for_each(|n| *n = New(0));
+                }
+            }
+            p.edges.insert(New(0), [v, New(0)]);
+            let mut after = After::new(p, Some(SAME));
+            after.corners = carried;
+            vec![after]
+        }
+        Op::Collapse(h, position) => {
+            let [a, b] = ends(mesh, h)?;
+            p.edges.remove(&p.edge_between(a, b)?);
+            let mut merged = BTreeSet::new();
+            for ends in [(a, b), (b, a)] {
+                let Some(f) = left.get(&ends) else { continue };
+                let c = &before.faces[f];
+                if c.len() == 3 {
+                    p.faces.remove(f);
+                    let apex = *c.iter().find(|v| **v != a && **v != b)?;
+                    p.edges.remove(&p.edge_between(a, apex)?);
+                    merged.insert(p.edge_between(b, apex)?);
+                } else {
+                    // The corner that goes; where the face began there, it begins at the other.
+                    let began = c[0];
+                    let mut c: Vec<V> = c.iter().copied().filter(|&v| v != a).collect();
+                    if began == a {
+                        c = rotated(&c, b);
+                    }
+                    p.faces.insert(*f, c);
+                }
+            }
+            p.rename(|v| if v == a { b } else { v });
+            p.at.remove(&a);
+            p.at.insert(b, position);
+            let mut after = After::new(p, Some(SAME));
+            after.mixed_vertices.insert(b);
+            after.mixed_corners = after.plain.faces.keys().map(|&f| (f, b)).collect();
+            after.mixed_edges = merged;
+            vec![after]
+        }
+        Op::FlipEdge(e) => {
+            let [a, b] = *before.edges.get(&Old(e))?;
+            let (f, g) = (*left.get(&(a, b))?, *left.get(&(b, a))?);
+            let (c, d) = (rotated(&before.faces[&f], b)[1], rotated(&before.faces[&g], a)[1]);
+            for (f, lost, new) in [(f, b, d), (g, a, c)] {
+                p.faces.get_mut(&f)?.iter_mut().filter(|v| **v == lost).for_each(|v| *v = new);
+            }
+            p.edges.insert(Old(e), [d, c]);
+            let mut after = After::new(p, Some(SAME));
+            after.corners = vec![((f, d), (old_face(g), d.key(&[]))), ((g, c), (old_face(f), c.key(&[])))];
+            vec![after]
+        }
+        Op::JoinFaces(e) => {
+            let [a, b] = *before.edges.get(&Old(e))?;
+            let (f, g) = (*left.get(&(a, b))?, *left.get(&(b, a))?);
+            let (of_f, of_g) = (&before.faces[&f], &before.faces[&g]);
+            // Vertices of the chain, in the order of f.
+            let mut chain = vec![a, b];
+            while let x = rotated(of_f, chain[chain.len() - 1])[1]
+                && left.get(&(x, chain[chain.len() - 1])) == Some(&g)
+            {
+                chain.push(x);
+            }
+            while let x = rotated(of_g, chain[0])[1]
+                && left.get(&(x, chain[0])) == Some(&f)
+            {
+                chain.insert(0, x);
+            }
+            let (u, w) = (chain[0], chain[chain.len() - 1]);
+            let part = |cycle: &[V]| cycle[chain.len() - 1..].to_vec();
+            let (from_f, from_g) = (part(&rotated(of_f, u)), part(&rotated(of_g, w)));
+            let merged: Vec<V> = from_f.iter().chain(&from_g).copied().collect();
+            for pair in chain.windows(2) {
+                p.edges.remove(&before.edge_between(pair[0], pair[1])?);
+            }
+            p.at.retain(|v, _| !chain[1..chain.len() - 1].contains(v));
+            p.faces.remove(&g);
+            p.faces.insert(f, keeping_first(before, f, merged));
+            let mut after = After::new(p, Some(SAME));
+            after.corners = from_g[1..].iter().map(|&v| ((f, v), (old_face(g), v.key(&[])))).collect();
+            after.mixed_corners = [(f, u), (f, w)].into();
+            after.mixed_faces = [f].into();
+            vec![after]
+        }
+        Op::DissolveVertex(v) => return dissolve(before, Old(v)),
+        Op::TriangulateFace(f) => return triangulate(before, f),
+        Op::FillHole(h) => {
+            let [a, b] = ends(mesh, h)?;
+            if left.contains_key(&(a, b)) {
+                return None;
+            }
+            let next = before.boundary();
+            let mut cycle = vec![a];
+            while let n = next[&cycle[cycle.len() - 1]]
+                && n != a
+            {
+                cycle.push(n);
+            }
+            p.faces.insert(New(0), cycle);
+            vec![After::new(p, Some(Counts { euler: 1, loops: -1, ..SAME }))]
+        }
+        Op::Stitch(first, second) => {
+            let ([a, b], [c, d]) = (ends(mesh, first)?, ends(mesh, second)?);
+            if left.contains_key(&(a, b)) || left.contains_key(&(c, d)) || first == second {
+                return None;
+            }
+            let merged = |v| {
+                if v == d {
+                    a
+                } else if v == c {
+                    b
+                } else {
+                    v
+                }
+            };
+            p.edges.remove(&before.edge_between(c, d)?);
+            p.rename(merged);
+            let mut after = After::new(p, None);
+            for v in [c, d].into_iter().filter(|&v| merged(v) != v) {
+                after.plain.at.remove(&v);
+                for (&f, _) in before.faces.iter().filter(|(_, c)| c.contains(&v)) {
+                    after.corners.push(((f, merged(v)), (old_face(f), v.key(&[]))));
+                }
+            }
+            after.mixed_vertices = [a, b].into();
+            after.mixed_edges = before.edge_between(a, b).into_iter().collect();
+            vec![after]
+        }
+        Op::ReverseComponent(f) => {
+            let mut reached: BTreeSet<V> = before.faces.get(&Old(f))?.iter().copied().collect();
+            loop {
+                let more: BTreeSet<V> = before
+                    .faces
+                    .values()
+                    .filter(|c| c.iter().any(|v| reached.contains(v)))
+                    .flatten()
+                    .copied()
+                    .collect();
+                if more.len() == reached.len() {
+                    break;
+                }
+                reached = more;
+            }
+            p.faces.values_mut().filter(|c| reached.contains(&c[0])).for_each(|c| c[1..].reverse());
+            p.edges.values_mut().filter(|c| reached.contains(&c[0])).for_each(|c| c.reverse());
+            vec![After::new(p, Some(SAME))]
+        }
+    })
+}
+
+/// The cycle from the face's first corner, if that is among its corners still.
+fn keeping_first(before: &Plain, f: F, cycle: Vec<V>) -> Vec<V> {
+    let first = before.faces[&f][0];
+    if cycle.contains(&first) { rotated(&cycle, first) } else { cycle }
+}
+
+fn without_bare_edges(mut p: Plain) -> Plain {
+    let left = p.left();
+    p.edges.retain(|_, &mut [a, b]| left.contains_key(&(a, b)) || left.contains_key(&(b, a)));
+    p
+}
+
+fn put_on_edge(p: &mut Plain, e: EdgeKey, position: DVec3) -> Option<()> {
+    let [a, b] = *p.edges.get(&Old(e))?;
+    p.at.insert(New(0), position);
+    p.edges.insert(Old(e), [a, New(0)]);
+    p.edges.insert(New(0), [New(0), b]);
+    for cycle in p.faces.values_mut() {
+        let at = around(cycle).position(|ends| ends == (a, b) || ends == (b, a));
+        if let Some(at) = at {
+            cycle.insert(at + 1, New(0));
+        }
+    }
+    Some(())
+}
+
+fn dissolve(before: &Plain, v: V) -> Option<Vec<After>> {
+    let spokes = before.clockwise(v);
+    let left = before.left();
+    let (&first, &last) = (spokes.first()?, spokes.last()?);
+    let is_open = !left.contains_key(&(v, first));
+    let mut p = before.clone();
+    p.at.remove(&v);
+    let at = |n| before.edge_between(v, n);
+    let gap = [at(first)?, at(last)?];
+    let mut states = Vec::new();
+    if spokes.len() == 2 {
+        for c in p.faces.values_mut() {
+            c.retain(|&n| n != v);
+        }
+        states.push(After::new(p, Some(SAME)));
+    } else {
+        // Counter-clockwise around the vertex.
+        let mut rim = Vec::new();
+        let mut corners = Vec::new();
+        let mut faces = Vec::new();
+        for &n in spokes.iter().rev() {
+            let Some(&f) = left.get(&(v, n)) else { continue };
+            let c = rotated(&before.faces[&f], v);
+            rim.extend(&c[1..c.len() - 1]);
+            corners.extend(c[1..].iter().map(|&n| (n, f)));
+            faces.push(f);
+        }
+        if is_open {
+            rim.push(first);
+        }
+        let twice = |n: V| corners.iter().filter(|c| c.0 == n).count() > 1;
+        for n in &spokes {
+            p.edges.remove(&at(*n)?);
+        }
+        for &keeps in &faces {
+            let mut p = p.clone();
+            faces.iter().for_each(|f| drop(p.faces.remove(f)));
+            p.faces.insert(keeps, keeping_first(before, keeps, rim.clone()));
+            let mut state = After::new(p, Some(SAME));
+            state.mixed_faces.insert(keeps);
+            state.mixed_corners = rim.iter().filter(|&&n| twice(n)).map(|&n| (keeps, n)).collect();
+            let whole = corners.iter().filter(|c| !twice(c.0));
+            state.corners = whole.map(|&(n, f)| ((keeps, n), (old_face(f), n.key(&[])))).collect();
+            states.push(state);
+        }
+    }
+    if !is_open && spokes.len() > 2 {
+        return Some(states);
+    }
+    // One of the edges at the ends of the gap closes it.
+    let closed = |state: &After, keeps: usize| {
+        let mut state = state.clone();
+        let other = [last, first][keeps];
+        state.plain.edges.remove(&gap[1 - keeps]);
+        let turned = before.edges[&gap[keeps]].map(|n| if n == v { other } else { n });
+        state.plain.edges.insert(gap[keeps], turned);
+        state.mixed_edges.insert(gap[keeps]);
+        state
+    };
+    Some(states.iter().flat_map(|s| [closed(s, 0), closed(s, 1)]).collect())
+}
+
+/// The crate's rule for a polygon, asked about the polygon alone; a quad may take its other diagonal.
+fn triangulate(before: &Plain, f: FaceKey) -> Option<Vec<After>> {
+    let cycle = before.faces.get(&Old(f))?;
+    // The rule breaks ties by the order of vertices.
+    let mut order = cycle.clone();
+    order.sort_unstable();
+    let points = order.iter().map(|v| before.at[v]).collect();
+    let numbers: Vec<u32> =
+        cycle.iter().filter_map(|v| order.binary_search(v).ok()).map(|i| i as u32).collect();
+    let mut alone = Mesh::build(&IndexedMesh::new(points, vec![numbers].into()).ok()?).ok()?;
+    let name: BTreeMap<VertexKey, V> = alone.vertices().zip(order).collect();
+    let only = alone.faces().next()?;
+    let cuts = alone.triangulate_face(only).ok()?.cuts;
+    let corners = |f| alone.face_vertices(f).map(|v| name[&v]).collect::<Vec<V>>();
+    let mut p = before.clone();
+    p.faces.insert(Old(f), keeping_first(before, Old(f), corners(only)));
+    for (i, cut) in cuts.iter().enumerate() {
+        let h = alone.edge_halfedge(cut.edge);
+        let diagonal = [alone.origin(h), alone.target(h)].map(|v| name[&v]);
+        p.edges.insert(New(i), diagonal);
+        p.faces.insert(New(i), corners(cut.face));
+    }
+    let state = |p: Plain| {
+        let mut after = After::new(p, Some(SAME));
+        (0..cuts.len()).for_each(|i| after.carry(New(i), f));
+        after
+    };
+    let blocked = (0..cuts.len()).any(|i| {
+        let [a, b] = p.edges[&New(i)];
+        before.edge_between(a, b).is_some()
+    });
+    if !blocked || cycle.len() != 4 {
+        return Some(vec![state(p)]);
+    }
+    let [a, b] = p.edges[&New(0)];
+    let c = rotated(cycle, a);
+    debug_assert_eq!(c[2], b);
+    let halves = [vec![c[1], c[2], c[3]], vec![c[3], c[0], c[1]]];
+    let other = |new: usize| {
+        let mut p = p.clone();
+        p.faces.insert(New(0), halves[new].clone());
+        p.faces.insert(Old(f), keeping_first(before, Old(f), halves[1 - new].clone()));
+        let h = &halves[new];
+        p.edges.insert(New(0), [h[2], h[0]]);
+        state(p)
+    };
+    Some(vec![other(0), other(1)])
+}
