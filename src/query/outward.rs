@@ -242,7 +242,7 @@ pub(crate) fn judge(
         }
         let volume = signed_volume(own, places);
         verdict.confidence = if volume == 0.0 { 0.0 } else { 1.0 };
-        verdict.reverse = if verdict.depth % 2 == 0 { volume < 0.0 } else { volume > 0.0 };
+        verdict.reverse = if verdict.depth.is_multiple_of(2) { volume < 0.0 } else { volume > 0.0 };
         verdicts.push(verdict);
     }
     Ok(verdicts)
