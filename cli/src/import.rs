@@ -1,11 +1,12 @@
 //! From a file to what a command works on.
 
 use crate::progress;
-use crate::session::{Failure, Phase, Session};
+use crate::session::{Failure, Fields, Phase, Session};
+use crate::text;
 use meshwright::cleanup::{CleanOptions, Weld, clean, index};
 use meshwright::io::{Limits, Loaded, read_file};
-use meshwright::{Control, IndexedMesh, Mesh, Outcome, Report, Step};
-use serde_json::{Map, Value, json};
+use meshwright::{Control, IndexedMesh, Mesh, Outcome, Report};
+use serde_json::json;
 use std::path::Path;
 
 /// Reads a file, and says on standard error what the reader tolerated.
@@ -18,13 +19,22 @@ pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure
     Ok(loaded)
 }
 
-/// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one. Returns the mesh
-/// and what is to be told about the import.
-pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(Mesh, Value), Failure> {
+/// A file made into a mesh.
+pub(crate) struct Imported {
+    pub(crate) mesh: Mesh,
+    /// What is to be told about it, for `"import"`.
+    pub(crate) json: Fields,
+    /// What of the file the mesh does not have, in a line.
+    pub(crate) not_carried: Option<String>,
+}
+
+/// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one.
+pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<Imported, Failure> {
     let loaded = load(session, path)?;
     if strict {
-        return strict_mesh(session, &loaded)
-            .map(|mesh| (mesh, json!({ "notes": loaded.notes, "counts": {} })));
+        let mesh = strict_mesh(session, &loaded)?;
+        let json = session.fields(false).with("notes", &loaded.notes).with("counts", &json!({}));
+        return Ok(Imported { mesh, json, not_carried: None });
     }
     let outcome = session.timed(Phase::Build, || {
         progress::shown(|hook| {
@@ -32,34 +42,33 @@ pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(
         })
     })?;
     say_changes(session, &outcome.report);
-    Ok((outcome.value, import_json(&loaded, &outcome.report)))
+    let json = import_json(session, &loaded, &outcome.report);
+    Ok(Imported { mesh: outcome.value, json, not_carried: text::not_carried(&outcome.report) })
 }
 
 /// What the import changed, for `"import"`.
-pub(crate) fn import_json(loaded: &Loaded, report: &Report) -> Value {
-    json!({
-        "notes": loaded.notes,
-        "counts": report.counts(),
-        "defects": report.records,
-        "steps": report.steps,
-        "not_carried": report.not_carried,
-    })
+pub(crate) fn import_json(session: &Session, loaded: &Loaded, report: &Report) -> Fields {
+    session
+        .fields(false)
+        .with("notes", &loaded.notes)
+        .with("counts", &report.counts())
+        .with("defects", &report.records)
+        .with("steps", &report.steps)
+        .with("not_carried", &report.not_carried)
 }
 
 fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> {
     let indexed = session.timed(Phase::Build, || index(&loaded.soup, Weld::Exact))?;
-    let refuse = |message: String, defects: Value| {
-        let json = Map::from_iter([("defects".to_owned(), defects)]);
-        Err(Failure::Refused { message, json })
-    };
+    let fields = session.fields(false);
     if let Some(first) = indexed.report.records.first() {
         let more = indexed.report.records.len() - 1;
         let message = format!("not a valid vertex pool: {} at {} and {more} more", first.kind, first.element);
-        return refuse(message, json!(indexed.report.records));
+        return Err(Failure::Refused { message, json: fields.with("defects", &indexed.report.records) });
     }
-    session
-        .timed(Phase::Build, || Mesh::build(&indexed.value))
-        .or_else(|error| refuse(error.to_string(), json!(error.defects)))
+    session.timed(Phase::Build, || Mesh::build(&indexed.value)).map_err(|error| Failure::Refused {
+        message: error.to_string(),
+        json: fields.with("defects", &error.defects),
+    })
 }
 
 /// Reads a file and welds it, whatever its state.
@@ -75,33 +84,8 @@ pub(crate) fn indexed(
 }
 
 /// Says on standard error what was changed, in a line per kind.
-pub(crate) fn say_changes(session: &Session, report: &Report) {
-    for line in changes(report) {
+fn say_changes(session: &Session, report: &Report) {
+    for line in text::changes(report) {
         session.say(&line);
     }
-}
-
-/// What was changed, a line per kind, with the first few elements.
-pub(crate) fn changes(report: &Report) -> Vec<String> {
-    const SHOWN: usize = 5;
-    let mut lines = Vec::new();
-    let weld = report.steps.iter().find(|s| s.step == Step::Weld && s.changed > 0);
-    if let Some(weld) = weld {
-        let how = match weld.tolerance {
-            Some(t) if t > 0.0 => format!("closer than {t}"),
-            _ => "at equal coordinates".to_owned(),
-        };
-        lines.push(format!("merged {} vertices {how}", weld.changed));
-    }
-    for (kind, count) in report.counts() {
-        let records = report.records.iter().filter(|r| r.kind == kind).take(SHOWN);
-        let shown: Vec<String> = records.map(|r| r.element.to_string()).collect();
-        let more = if count > SHOWN { format!(" and {} more", count - SHOWN) } else { String::new() };
-        lines.push(format!("{count} x {}: {}{more}", kind.as_str().replace('_', " "), shown.join(", ")));
-    }
-    if !report.not_carried.is_empty() {
-        let names: Vec<String> = report.not_carried.iter().map(|a| a.as_str().replace('_', " ")).collect();
-        lines.push(format!("not carried: {}", names.join(", ")));
-    }
-    lines
 }
