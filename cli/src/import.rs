@@ -11,7 +11,8 @@ use std::path::Path;
 
 /// Reads a file, and says on standard error what the reader tolerated.
 pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure> {
-    let loaded = session.timed(Phase::Read, || read_file(path, &Limits::default()));
+    let loaded =
+        session.timed(Phase::Read, || progress::named("reading", || read_file(path, &Limits::default())));
     let loaded = loaded.map_err(|error| Failure::input(path, &error))?;
     for note in &loaded.notes {
         session.say(&format!("{}: {note}", path.display()));
@@ -58,17 +59,17 @@ pub(crate) fn import_json(session: &Session, loaded: &Loaded, report: &Report) -
 }
 
 fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> {
-    let indexed = session.timed(Phase::Build, || index(&loaded.soup, Weld::Exact))?;
+    let indexed =
+        session.timed(Phase::Build, || progress::named("welding", || index(&loaded.soup, Weld::Exact)))?;
     let fields = session.fields(false);
     if let Some(first) = indexed.report.records.first() {
         let more = indexed.report.records.len() - 1;
         let message = format!("not a valid vertex pool: {} at {} and {more} more", first.kind, first.element);
         return Err(Failure::Refused { message, json: fields.with("defects", &indexed.report.records) });
     }
-    session.timed(Phase::Build, || Mesh::build(&indexed.value)).map_err(|error| Failure::Refused {
-        message: error.to_string(),
-        json: fields.with("defects", &error.defects),
-    })
+    session.timed(Phase::Build, || progress::named("building", || Mesh::build(&indexed.value))).map_err(
+        |error| Failure::Refused { message: error.to_string(), json: fields.with("defects", &error.defects) },
+    )
 }
 
 /// Reads a file and welds it, whatever its state.
@@ -78,7 +79,7 @@ pub(crate) fn indexed(
     weld: Weld,
 ) -> Result<(Loaded, Outcome<IndexedMesh>), Failure> {
     let loaded = load(session, path)?;
-    let outcome = session.timed(Phase::Build, || index(&loaded.soup, weld))?;
+    let outcome = session.timed(Phase::Build, || progress::named("welding", || index(&loaded.soup, weld)))?;
     say_changes(session, &outcome.report);
     Ok((loaded, outcome))
 }

@@ -1,6 +1,7 @@
 //! Files written whole or not at all.
 
 use crate::args::Output;
+use crate::progress;
 use crate::session::{Failure, Phase, Session};
 use meshwright::PolygonSoup;
 use meshwright::io::{self, Encoding, Lost, WriteError};
@@ -49,7 +50,9 @@ pub(crate) fn stage_mesh(
 ) -> Result<(Staged, Vec<Lost>), Failure> {
     let (path, format) = (&output.output, output.format()?);
     let encoding = if output.ascii { Encoding::Ascii } else { Encoding::Binary };
-    let staged = session.timed(Phase::Write, || stage(path, |sink| io::write(soup, format, encoding, sink)));
+    let staged = session.timed(Phase::Write, || {
+        progress::named("writing", || stage(path, |sink| io::write(soup, format, encoding, sink)))
+    });
     let (staged, lost) = staged.map_err(|error| match error {
         WriteError::Io(error) => failed(path, &error),
         refused => Failure::refused(format!("{}: {refused}", path.display())),

@@ -226,6 +226,12 @@ pub enum WriteError {
         /// The vertex.
         vertex: usize,
     },
+    /// A position is too large for the single precision that binary STL has.
+    #[error("vertex {vertex} is beyond single precision")]
+    BeyondSingle {
+        /// The vertex.
+        vertex: usize,
+    },
     /// More elements than the format can count.
     #[error("{count} {what} are more than the format can count")]
     TooLarge {

@@ -11,7 +11,8 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     args.output.format()?;
     let loaded = import::load(session, &args.file)?;
     let Profile::Preserve = args.profile;
-    let before = session.timed(Phase::Run, || cleanup::inspect(&loaded.soup, args.weld))?;
+    let before = session
+        .timed(Phase::Run, || progress::named("inspecting", || cleanup::inspect(&loaded.soup, args.weld)))?;
     let outcome = session.timed(Phase::Run, || {
         progress::shown(|hook| {
             let options = CleanOptions { weld: args.weld, control: Control::new(hook), ..Default::default() };
@@ -20,7 +21,8 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     })?;
     let soup: PolygonSoup = session.timed(Phase::Run, || outcome.value.to_indexed().into());
     // Splits leave vertices at one place, so the result is looked at as it is.
-    let after = session.timed(Phase::Run, || cleanup::inspect(&soup, Weld::None))?;
+    let after = session
+        .timed(Phase::Run, || progress::named("inspecting", || cleanup::inspect(&soup, Weld::None)))?;
     // All files are complete before the first is put in its place.
     let (staged, lost) = output::stage_mesh(session, &args.output, &soup)?;
     let mut staged = vec![staged];

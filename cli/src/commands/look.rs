@@ -3,6 +3,7 @@
 use super::in_file;
 use crate::args::{Inspect, Volume};
 use crate::import::{self, Imported};
+use crate::progress;
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::text::{counted, number, point};
 use meshwright::cleanup::{self, Facts};
@@ -11,7 +12,9 @@ use std::fmt::Write;
 
 pub(super) fn inspect(session: &mut Session, args: &Inspect) -> Result<Answer, Failure> {
     let loaded = import::load(session, &args.file)?;
-    let facts = session.timed(Phase::Run, || cleanup::inspect(&loaded.soup, args.weld.weld))?;
+    let facts = session.timed(Phase::Run, || {
+        progress::named("inspecting", || cleanup::inspect(&loaded.soup, args.weld.weld))
+    })?;
     let json = session.fields(false).with_all(&facts).with("notes", &loaded.notes);
     Ok(Answer { json, text: describe(&facts), ..Answer::default() })
 }
