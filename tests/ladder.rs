@@ -562,3 +562,12 @@ fn a_hub_of_many_faces_takes_no_quadratic_time() {
     assert_eq!(mesh.boundary_loops().len(), 1);
     assert_eq!(mesh.to_indexed(), pool);
 }
+
+#[test]
+fn a_mesh_of_triangles_takes_at_most_104_bytes_a_face() {
+    for pool in [shapes::icosphere(5), shapes::grid(100)] {
+        let mesh = mesh(&pool);
+        let bytes = mesh.heap_bytes() as f64 / mesh.face_count() as f64;
+        assert!(bytes <= 104.0, "{bytes}");
+    }
+}
