@@ -107,7 +107,7 @@ pub(super) fn is_closed(session: &mut Session, args: &Inspect) -> Result<Answer,
     let witnesses = session.fields(false).with("empty", &is_empty);
     let witnesses = witnesses.with("boundary_edges", &naked).with("nonmanifold_edges", &more);
     let json = session.fields(false).with("closed", &closed).with_object("witnesses", &witnesses);
-    Ok(Answer { json, text, is_no: !closed, ..Answer::default() })
+    Ok(Answer { json, text, is_no: !closed })
 }
 
 pub(super) fn naked_edges(session: &mut Session, args: &Inspect) -> Result<Answer, Failure> {
