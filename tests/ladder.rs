@@ -100,6 +100,62 @@ fn pools(faces: std::ops::Range<usize>) -> impl Strategy<Value = IndexedMesh> {
     )
 }
 
+/// Soups in which everything goes wrong that a soup allows, though rarely enough for some to be closed meshes.
+fn soups() -> impl Strategy<Value = PolygonSoup> {
+    let wild = prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-f64::INFINITY)];
+    let coordinate = prop_oneof![200 => (-2i8..3).prop_map(f64::from), 1 => wild];
+    let point = prop::array::uniform3(coordinate);
+    let points = prop_oneof![
+        9 => prop::collection::vec(point.clone(), 6..9),
+        1 => prop::collection::vec(point, 0..6),
+    ];
+    let corner = prop_oneof![60 => 0u32..6, 1 => 6u32..9, 1 => Just(PolygonSoup::NO_VERTEX)];
+    let face = prop_oneof![
+        30 => Just(vec![0, 1, 2, 3]).prop_shuffle().prop_map(|f| f[..3].to_vec()),
+        30 => Just(vec![0, 1, 2, 3, 4, 5]).prop_shuffle().prop_map(|f| f[..4].to_vec()),
+        10 => prop::collection::vec(corner, 0..6),
+    ];
+    let few = prop_oneof![prop::collection::vec(face.clone(), 0..4), prop::collection::vec(face, 0..12)];
+    // A tetrahedron or a pillow of two quads now and then, so that the whole ladder is climbed.
+    let closed = [vec![], vec![[0u32, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]];
+    (points, few, prop::sample::select(closed.to_vec())).prop_map(|(points, few, closed)| {
+        let points = points.into_iter().map(DVec3::from).collect();
+        let faces = if closed.is_empty() { few } else { few.into_iter().take(1).collect() };
+        PolygonSoup::new(points, closed.iter().map(|f| f.to_vec()).chain(faces).collect())
+    })
+}
+
+/// What makes a soup no vertex pool, corner by corner.
+fn naive_pool_defects(soup: &PolygonSoup) -> Vec<IndexedDefect> {
+    let mut defects = Vec::new();
+    for (v, p) in soup.positions.iter().enumerate() {
+        if !(p.x.is_finite() && p.y.is_finite() && p.z.is_finite()) {
+            defects.push(IndexedDefect::NonFinitePosition { vertex: v as u32 });
+        }
+    }
+    for (f, face) in soup.polygons.iter().enumerate() {
+        let face_index = f as u32;
+        if face.len() < 3 {
+            defects.push(IndexedDefect::TooFewCorners { face: face_index, corners: face.len() as u32 });
+        }
+        for (i, &v) in face.iter().enumerate() {
+            let corner = i as u32;
+            if v as usize >= soup.positions.len() {
+                defects.push(IndexedDefect::IndexOutOfRange { face: face_index, corner, index: v });
+            } else if face[..i].contains(&v) {
+                defects.push(IndexedDefect::RepeatedCorner { face: face_index, corner, vertex: v });
+            }
+        }
+    }
+    defects
+}
+
+fn in_any_order<T: std::fmt::Debug>(defects: &[T]) -> Vec<String> {
+    let mut words: Vec<String> = defects.iter().map(|d| format!("{d:?}")).collect();
+    words.sort();
+    words
+}
+
 /// Whether some choice of reversals makes all two-face edges agree: all of them are tried.
 fn naive_orientable(polygons: &Polygons) -> bool {
     let edges = naive_edges(polygons);
@@ -123,6 +179,54 @@ proptest! {
                 prop_assert_eq!(mesh.to_indexed(), pool);
             }
             Err(error) => prop_assert_eq!(sorted(error.defects), expected),
+        }
+    }
+
+    #[test]
+    fn each_rung_of_the_ladder_refuses_exactly_what_it_must(soup in soups()) {
+        let expected = naive_pool_defects(&soup);
+        let pool = match IndexedMesh::try_from(soup.clone()) {
+            Ok(pool) => {
+                prop_assert!(expected.is_empty(), "{expected:?}");
+                prop_assert_eq!(pool.polygons(), &soup.polygons);
+                prop_assert_eq!(pool.positions(), &soup.positions[..]);
+                pool
+            }
+            Err(error) => {
+                prop_assert_eq!(in_any_order(&error.defects), in_any_order(&expected));
+                return Ok(());
+            }
+        };
+        let expected = naive_defects(&pool);
+        let mesh = match Mesh::build(&pool) {
+            Ok(mesh) => {
+                prop_assert!(expected.is_empty(), "{expected:?}");
+                prop_assert_eq!(mesh.violations(), []);
+                prop_assert_eq!(mesh.to_indexed(), pool.clone());
+                mesh
+            }
+            Err(error) => {
+                prop_assert_eq!(sorted(error.defects), sorted(expected));
+                return Ok(());
+            }
+        };
+        let open: Vec<[u32; 2]> =
+            naive_edges(pool.polygons()).into_iter().filter(|(_, u)| u.len() == 1).map(|(e, _)| e).collect();
+        match mesh.closed() {
+            Ok(_) => prop_assert!(open.is_empty() && !pool.polygons().is_empty()),
+            Err(NotClosed::Empty) => prop_assert!(pool.polygons().is_empty()),
+            Err(NotClosed::Open { boundary }) => {
+                let keys: Vec<VertexKey> = mesh.vertices().collect();
+                let index = |v: VertexKey| keys.iter().position(|k| *k == v).expect("live") as u32;
+                let mut listed: Vec<[u32; 2]> = boundary
+                    .iter()
+                    .map(|&h| [index(mesh.origin(h)), index(mesh.target(h))])
+                    .map(|[a, b]| [a.min(b), a.max(b)])
+                    .collect();
+                listed.sort_unstable();
+                prop_assert_eq!(listed, open);
+            }
+            Err(other) => prop_assert!(false, "{other}"),
         }
     }
 
@@ -457,4 +561,13 @@ fn a_hub_of_many_faces_takes_no_quadratic_time() {
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.boundary_loops().len(), 1);
     assert_eq!(mesh.to_indexed(), pool);
+}
+
+#[test]
+fn a_mesh_of_triangles_takes_at_most_104_bytes_a_face() {
+    for pool in [shapes::icosphere(5), shapes::grid(100)] {
+        let mesh = mesh(&pool);
+        let bytes = mesh.heap_bytes() as f64 / mesh.face_count() as f64;
+        assert!(bytes <= 104.0, "{bytes}");
+    }
 }

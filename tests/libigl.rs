@@ -28,7 +28,11 @@ fn compare(igl: &mut Igl, name: &str, pool: &IndexedMesh) {
     assert_eq!(topology.is_edge_manifold(), theirs.is("edge_manifold"), "{name}: edge manifold");
     let pinched: BTreeSet<u32> = topology.pinched_vertices().into_iter().map(|p| p.0).collect();
     let isolated: BTreeSet<u32> = topology.isolated_vertices().into_iter().collect();
-    for (v, flag) in (0..).zip(theirs.flags("vertex_manifold")) {
+    let flags = theirs.flags("vertex_manifold");
+    // libigl counts the vertices up to the highest that a face names.
+    let top = pool.polygons().corners().iter().max().map_or(0, |&v| v + 1);
+    assert_eq!(flags.len(), top as usize, "{name}: an answer for each vertex");
+    for (v, flag) in (0..).zip(flags) {
         if !isolated.contains(&v) {
             assert_eq!(!pinched.contains(&v), flag, "{name}: vertex {v} manifold");
         }
@@ -37,11 +41,10 @@ fn compare(igl: &mut Igl, name: &str, pool: &IndexedMesh) {
     let (labels, count) = topology.components();
     assert_eq!(count as f64, theirs.number("components"), "{name}: components");
     let their_labels = theirs.integers("face_component");
+    assert_eq!(their_labels.len(), labels.len(), "{name}: an answer for each face");
     let pairs: BTreeSet<(u32, i64)> = labels.iter().copied().zip(their_labels).collect();
     assert_eq!(pairs.len(), count, "{name}: the components hold the same faces");
 
-    // libigl counts the vertices up to the highest that a face names.
-    let top = pool.polygons().corners().iter().max().map_or(0, |&v| v + 1);
     let unused = isolated.range(..top).count() as f64;
     assert_eq!(
         topology.euler_characteristic() as f64 + unused,
@@ -60,6 +63,7 @@ fn compare(igl: &mut Igl, name: &str, pool: &IndexedMesh) {
 
     for (weight, column) in [(NormalWeight::Area, "normals_area"), (NormalWeight::Angle, "normals_angle")] {
         let theirs = theirs.numbers(column);
+        assert_eq!(theirs.len(), 3 * pool.vertex_count(), "{name}: an answer for each vertex");
         let certainty = certainty(pool, weight);
         for ((v, ours), theirs) in
             pool.vertex_normals(weight).into_iter().enumerate().zip(theirs.chunks_exact(3))
@@ -74,6 +78,26 @@ fn compare(igl: &mut Igl, name: &str, pool: &IndexedMesh) {
 
     if topology.orientable().is_ok() && topology.is_edge_manifold() && topology.is_vertex_manifold() {
         compare_winding(name, pool, &theirs);
+    }
+    if let Ok(mesh) = Mesh::build(pool) {
+        compare_mesh(name, pool, &mesh, &theirs);
+    }
+}
+
+/// The mesh says what its pool says, which was compared, and what only a mesh can say.
+fn compare_mesh(name: &str, pool: &IndexedMesh, mesh: &Mesh, theirs: &igl::Opinion) {
+    assert_eq!(2 * mesh.boundary_halfedges().count(), theirs.integers("boundary").len(), "{name}");
+    assert_eq!(mesh.components().len() as f64, theirs.number("components"), "{name}");
+    for weight in [NormalWeight::Area, NormalWeight::Angle] {
+        let certainty = certainty(pool, weight);
+        for ((v, expected), certainty) in mesh.vertices().zip(pool.vertex_normals(weight)).zip(certainty) {
+            let ours = mesh.vertex_normal(v, weight).expect("live");
+            assert!(certainty <= 1e-6 || ours.distance(expected) < 1e-9, "{name}: {ours} {expected}");
+        }
+    }
+    assert_eq!(mesh.closed().is_ok(), theirs.integers("boundary").is_empty(), "{name}: closed");
+    if let Ok(solid) = mesh.closed() {
+        assert_eq!(Some(solid.volume()), pool.topology().volume(), "{name}");
     }
 }
 

@@ -9,6 +9,8 @@ use std::path::PathBuf;
 
 /// Inspect, clean and convert meshes (OBJ, STL, PLY, OFF).
 ///
+/// Vertices and faces are numbered from 0, in the order of the file.
+///
 /// Exit codes: 0 done; 1 answered "no" or refused; 2 wrong usage; 3 the input cannot be read; 4 the output cannot be written.
 #[derive(Debug, Parser)]
 #[command(name = "meshwright", version, subcommand_required = true, arg_required_else_help = true)]
@@ -84,7 +86,7 @@ pub(crate) struct Clean {
     pub(crate) file: PathBuf,
     #[command(flatten)]
     pub(crate) output: Output,
-    /// What for
+    /// What the result is for
     #[arg(long, value_enum, default_value = "preserve")]
     pub(crate) profile: Profile,
     /// Merge vertices first: none, exact, auto (a tolerance proposed from the data), or closer than a tolerance

@@ -1,16 +1,18 @@
 //! From a file to what a command works on.
 
 use crate::progress;
-use crate::session::{Failure, Phase, Session};
+use crate::session::{Failure, Fields, Phase, Session};
+use crate::text;
 use meshwright::cleanup::{CleanError, CleanOptions, Weld, clean, clean_indexed, index};
 use meshwright::io::{Limits, Loaded, read_file};
-use meshwright::{Control, IndexedMesh, LostValue, Maps, Mesh, Outcome, PolygonSoup, Report, Step};
-use serde_json::{Map, Value, json};
+use meshwright::{Control, IndexedMesh, LostValue, Maps, Mesh, Outcome, PolygonSoup, Report};
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Reads a file, and says on standard error what the reader tolerated.
 pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure> {
-    let loaded = session.timed(Phase::Read, || read_file(path, &Limits::default()));
+    let loaded =
+        session.timed(Phase::Read, || progress::named("reading", || read_file(path, &Limits::default())));
     let loaded = loaded.map_err(|error| Failure::input(path, &error))?;
     for note in &loaded.notes {
         session.say(&format!("{}: {note}", path.display()));
@@ -18,28 +20,29 @@ pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure
     Ok(loaded)
 }
 
-/// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one. Returns the mesh
-/// and what is to be told about the import.
-pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(Mesh, Value), Failure> {
-    mesh_with_maps(session, path, strict).map(|(mesh, _, import)| (mesh, import))
+/// A file made into a mesh, or into the vertex pool of one.
+pub(crate) struct Imported<T> {
+    pub(crate) value: T,
+    /// From the file's elements to the mesh's.
+    pub(crate) maps: Maps,
+    /// What is to be told about it, for `"import"`.
+    pub(crate) json: Fields,
+    /// What of the file the result does not have, in lines.
+    pub(crate) not_carried: Vec<String>,
 }
 
-/// The same with the relations between the file's elements and the mesh's.
-pub(crate) fn mesh_with_maps(
-    session: &mut Session,
-    path: &Path,
-    strict: bool,
-) -> Result<(Mesh, Maps, Value), Failure> {
+/// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one.
+pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<Imported<Mesh>, Failure> {
     import(session, path, strict, clean, |(_, mesh)| mesh)
 }
 
-/// As [`mesh`], but gives the vertex pool of the mesh, with all attributes.
+/// As [`mesh`], but gives the vertex pool of the mesh.
 pub(crate) fn pool(
     session: &mut Session,
     path: &Path,
     strict: bool,
-) -> Result<(IndexedMesh, Value), Failure> {
-    import(session, path, strict, clean_indexed, |(pool, _)| pool).map(|(pool, _, import)| (pool, import))
+) -> Result<Imported<IndexedMesh>, Failure> {
+    import(session, path, strict, clean_indexed, |(pool, _)| pool)
 }
 
 fn import<T>(
@@ -48,49 +51,63 @@ fn import<T>(
     strict: bool,
     clean: impl FnOnce(&PolygonSoup, CleanOptions<'_>) -> Result<Outcome<T>, CleanError>,
     choose: impl FnOnce((IndexedMesh, Mesh)) -> T,
-) -> Result<(T, Maps, Value), Failure> {
+) -> Result<Imported<T>, Failure> {
     let loaded = load(session, path)?;
-    if strict {
-        let (pool, mesh, maps, report) = strict_mesh(session, &loaded)?;
-        return Ok((choose((pool, mesh)), maps, import_json(&loaded, &report)));
-    }
-    let outcome = session.timed(Phase::Build, || {
-        progress::shown(|hook| {
-            clean(&loaded.soup, CleanOptions { control: Control::new(hook), ..Default::default() })
-        })
-    })?;
-    say_changes(session, &outcome.report);
-    let import = import_json(&loaded, &outcome.report);
-    Ok((outcome.value, outcome.maps, import))
+    let Outcome { value, report, maps } = if strict {
+        strict_mesh(session, &loaded, choose)?
+    } else {
+        session.timed(Phase::Build, || {
+            progress::shown(|hook| {
+                clean(&loaded.soup, CleanOptions { control: Control::new(hook), ..Default::default() })
+            })
+        })?
+    };
+    say_changes(session, &report);
+    let json = import_json(session, &loaded, &report);
+    Ok(Imported { value, maps, json, not_carried: text::not_carried(&report) })
 }
 
 /// What the import changed, for `"import"`.
-pub(crate) fn import_json(loaded: &Loaded, report: &Report) -> Value {
-    json!({
-        "notes": loaded.notes,
-        "counts": report.counts(),
-        "defects": report.records,
-        "steps": report.steps,
-        "not_carried": report.not_carried,
-        "lost_values": lost_values(report),
-    })
+pub(crate) fn import_json(session: &Session, loaded: &Loaded, report: &Report) -> Fields {
+    session
+        .fields(false)
+        .with("notes", &loaded.notes)
+        .with("counts", &report.counts())
+        .with("defects", &report.records)
+        .with("steps", &report.steps)
+        .with("not_carried", &report.not_carried)
+        .with("lost_values", &lost_values(report))
 }
 
-fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<(IndexedMesh, Mesh, Maps, Report), Failure> {
-    let indexed = session.timed(Phase::Build, || index(&loaded.soup, Weld::Exact))?;
-    let refuse = |message: String, defects: Value| {
-        let json = Map::from_iter([("defects".to_owned(), defects)]);
-        Err(Failure::Refused { message, json })
+/// The values that were not carried, for `"lost_values"`: how many, and the first, as there may be one at each vertex.
+pub(crate) fn lost_values(report: &Report) -> Vec<Value> {
+    let summary = |lost: &[LostValue]| {
+        let LostValue { attribute, reason, element } = lost[0];
+        json!({ "attribute": attribute, "reason": reason, "count": lost.len(), "first": element })
     };
+    text::alike(report).map(summary).collect()
+}
+
+fn strict_mesh<T>(
+    session: &mut Session,
+    loaded: &Loaded,
+    choose: impl FnOnce((IndexedMesh, Mesh)) -> T,
+) -> Result<Outcome<T>, Failure> {
+    let indexed =
+        session.timed(Phase::Build, || progress::named("welding", || index(&loaded.soup, Weld::Exact)))?;
+    let fields = session.fields(false);
     if let Some(first) = indexed.report.records.first() {
         let more = indexed.report.records.len() - 1;
         let message = format!("not a valid vertex pool: {} at {} and {more} more", first.kind, first.element);
-        return refuse(message, json!(indexed.report.records));
+        return Err(Failure::Refused { message, json: fields.with("defects", &indexed.report.records) });
     }
-    say_changes(session, &indexed.report);
-    match session.timed(Phase::Build, || Mesh::build(&indexed.value)) {
-        Ok(mesh) => Ok((indexed.value, mesh, indexed.maps, indexed.report)),
-        Err(error) => refuse(error.to_string(), json!(error.defects)),
+    let Outcome { value: pool, report, maps } = indexed;
+    match session.timed(Phase::Build, || progress::named("building", || Mesh::build(&pool))) {
+        Ok(mesh) => Ok(Outcome { value: choose((pool, mesh)), report, maps }),
+        Err(error) => {
+            let json = fields.with("defects", &error.defects);
+            Err(Failure::Refused { message: error.to_string(), json })
+        }
     }
 }
 
@@ -101,59 +118,14 @@ pub(crate) fn indexed(
     weld: Weld,
 ) -> Result<(Loaded, Outcome<IndexedMesh>), Failure> {
     let loaded = load(session, path)?;
-    let outcome = session.timed(Phase::Build, || index(&loaded.soup, weld))?;
+    let outcome = session.timed(Phase::Build, || progress::named("welding", || index(&loaded.soup, weld)))?;
     say_changes(session, &outcome.report);
     Ok((loaded, outcome))
 }
 
 /// Says on standard error what was changed, in a line per kind.
-pub(crate) fn say_changes(session: &Session, report: &Report) {
-    for line in changes(report) {
+fn say_changes(session: &Session, report: &Report) {
+    for line in text::changes(report) {
         session.say(&line);
     }
-}
-
-/// What was changed, a line per kind, with the first few elements.
-pub(crate) fn changes(report: &Report) -> Vec<String> {
-    const SHOWN: usize = 5;
-    let mut lines = Vec::new();
-    let weld = report.steps.iter().find(|s| s.step == Step::Weld && s.changed > 0);
-    if let Some(weld) = weld {
-        let how = match weld.tolerance {
-            Some(t) if t > 0.0 => format!("closer than {t}"),
-            _ => "at equal coordinates".to_owned(),
-        };
-        lines.push(format!("merged {} vertices {how}", weld.changed));
-    }
-    for (kind, count) in report.counts() {
-        let records = report.records.iter().filter(|r| r.kind == kind).take(SHOWN);
-        let shown: Vec<String> = records.map(|r| r.element.to_string()).collect();
-        let more = if count > SHOWN { format!(" and {} more", count - SHOWN) } else { String::new() };
-        lines.push(format!("{count} x {}: {}{more}", kind.as_str().replace('_', " "), shown.join(", ")));
-    }
-    if !report.not_carried.is_empty() {
-        let names: Vec<String> = report.not_carried.iter().map(|a| a.as_str().replace('_', " ")).collect();
-        lines.push(format!("not carried: {}", names.join(", ")));
-    }
-    for lost in alike(report) {
-        let [attribute, reason] =
-            [lost[0].attribute.as_str(), lost[0].reason.as_str()].map(|n| n.replace('_', " "));
-        let (count, first) = (lost.len(), lost[0].element);
-        lines.push(format!("{count} values of {attribute} not carried ({reason}): {first} first"));
-    }
-    lines
-}
-
-/// The values that were not carried, those of one attribute and reason together.
-fn alike(report: &Report) -> impl Iterator<Item = &[LostValue]> {
-    report.lost_values.chunk_by(|a, b| (a.attribute, a.reason) == (b.attribute, b.reason))
-}
-
-/// The values that were not carried, for `"lost_values"`: how many, and the first, as there may be one at each vertex.
-pub(crate) fn lost_values(report: &Report) -> Value {
-    let summary = |lost: &[LostValue]| {
-        let LostValue { attribute, reason, element } = lost[0];
-        json!({ "attribute": attribute, "reason": reason, "count": lost.len(), "first": element })
-    };
-    alike(report).map(summary).collect()
 }

@@ -6,6 +6,7 @@ mod import;
 mod output;
 mod progress;
 mod session;
+mod text;
 
 use args::Cli;
 use clap::Parser;

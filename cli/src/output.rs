@@ -1,6 +1,7 @@
 //! Files written whole or not at all.
 
 use crate::args::Output;
+use crate::progress;
 use crate::session::{Failure, Phase, Session};
 use meshwright::PolygonSoup;
 use meshwright::io::{self, Encoding, Lost, WriteError};
@@ -9,66 +10,95 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+/// A file that is complete, but not yet in its place; dropped, it is gone.
+#[derive(Debug)]
+pub(crate) struct Staged {
+    beside: PathBuf,
+    destination: PathBuf,
+}
+
+impl Staged {
+    /// Puts it in its place.
+    pub(crate) fn commit(self) -> Result<(), Failure> {
+        fs::rename(&self.beside, &self.destination).map_err(|error| failed(&self.destination, &error))
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        // Committed, or never made, it is not there.
+        let _ = fs::remove_file(&self.beside);
+    }
+}
+
 /// Writes a mesh; returns, and says on standard error, what the format could not carry.
 pub(crate) fn write_mesh(
     session: &mut Session,
     output: &Output,
     soup: &PolygonSoup,
 ) -> Result<Vec<Lost>, Failure> {
+    let (staged, lost) = stage_mesh(session, output, soup)?;
+    staged.commit()?;
+    Ok(lost)
+}
+
+/// As [`write_mesh`], but for the last step.
+pub(crate) fn stage_mesh(
+    session: &mut Session,
+    output: &Output,
+    soup: &PolygonSoup,
+) -> Result<(Staged, Vec<Lost>), Failure> {
     let (path, format) = (&output.output, output.format()?);
     let encoding = if output.ascii { Encoding::Ascii } else { Encoding::Binary };
-    let lost = session
-        .timed(Phase::Write, || whole_or_not_at_all(path, |sink| io::write(soup, format, encoding, sink)));
-    let lost = lost.map_err(|error| match error {
-        WriteError::Io(error) => Failure::Output(format!("{}: {error}", path.display())),
+    let staged = session.timed(Phase::Write, || {
+        progress::named("writing", || stage(path, |sink| io::write(soup, format, encoding, sink)))
+    });
+    let (staged, lost) = staged.map_err(|error| match error {
+        WriteError::Io(error) => failed(path, &error),
         refused => Failure::refused(format!("{}: {refused}", path.display())),
     })?;
     for kind in &lost {
         session.say(&format!("{} cannot hold {kind}", path.display()));
     }
-    Ok(lost)
+    Ok((staged, lost))
 }
 
-/// Writes a JSON file.
-pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
-    write_with(path, |sink| {
+/// Stages a JSON file.
+pub(crate) fn stage_json(path: &Path, value: &impl serde::Serialize) -> Result<Staged, Failure> {
+    let write = |sink: &mut BufWriter<File>| -> std::io::Result<()> {
         serde_json::to_writer(&mut *sink, value)?;
         sink.write_all(b"\n")
-    })
+    };
+    stage(path, write).map(|s| s.0).map_err(|error| failed(path, &error))
 }
 
-/// Writes a text file.
-pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    write_with(path, |sink| sink.write_all(text.as_bytes()))
+/// Stages a text file.
+pub(crate) fn stage_text(path: &Path, text: &str) -> Result<Staged, Failure> {
+    stage(path, |sink| sink.write_all(text.as_bytes())).map(|s| s.0).map_err(|error| failed(path, &error))
 }
 
-fn write_with(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
-) -> Result<(), Failure> {
-    whole_or_not_at_all(path, write).map_err(|error| Failure::Output(format!("{}: {error}", path.display())))
+fn failed(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Output(format!("{}: {error}", path.display()))
 }
 
-/// Writes to a file beside the destination, and moves it there once it is complete and on disk.
-fn whole_or_not_at_all<T, E: From<std::io::Error>>(
+/// Writes to a file beside the destination, all of it and onto the disk.
+fn stage<T, E: From<std::io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> Result<T, E>,
-) -> Result<T, E> {
-    let beside = beside(path);
-    let written = File::create_new(&beside).map_err(E::from).and_then(|file| {
-        let mut sink = BufWriter::new(file);
-        let result = write(&mut sink)?;
-        sink.flush()?;
-        sink.get_ref().sync_all()?;
-        drop(sink);
-        fs::rename(&beside, path)?;
-        Ok(result)
-    });
-    if written.is_err() {
-        // Gone already, or never made.
-        let _ = fs::remove_file(&beside);
+) -> Result<(Staged, T), E> {
+    // A link stays, what it leads to is replaced; a directory or device never is, nor what `/dev/stdout` leads to.
+    let destination = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if path.starts_with("/dev") || fs::metadata(&destination).is_ok_and(|there| !there.is_file()) {
+        return Err(std::io::Error::other("is no file that can be replaced").into());
     }
-    written
+    let beside = beside(&destination);
+    let file = File::create_new(&beside)?;
+    let staged = Staged { beside, destination };
+    let mut sink = BufWriter::new(file);
+    let result = write(&mut sink)?;
+    sink.flush()?;
+    sink.get_ref().sync_all()?;
+    Ok((staged, result))
 }
 
 fn beside(path: &Path) -> PathBuf {

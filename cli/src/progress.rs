@@ -3,25 +3,110 @@
 use meshwright::Progress;
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
+
+/// How long people wait before they are told something.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// To the beginning of the line, and nothing on it.
+const CLEAR: &str = "\r\x1b[K";
+
+/// Runs something that has no hook, and says on standard error what it is, if that is a terminal and it takes a while.
+pub(crate) fn named<T>(what: &str, run: impl FnOnce() -> T) -> T {
+    let err = std::io::stderr();
+    if !err.is_terminal() {
+        return run();
+    }
+    named_on(err, PATIENCE, what, run)
+}
+
+fn named_on<T>(mut sink: impl Write + Send, patience: Duration, what: &str, run: impl FnOnce() -> T) -> T {
+    let (done, waiting) = channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            if waiting.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
+                let _ = write!(sink, "{CLEAR}{what}").and_then(|()| sink.flush());
+                // Nothing is ever sent: this ends when the other side is gone.
+                let _ = waiting.recv();
+                let _ = write!(sink, "{CLEAR}").and_then(|()| sink.flush());
+            }
+        });
+        let _done = done;
+        run()
+    })
+}
 
 /// Runs something with a hook that shows progress on standard error, if that is a terminal and it takes a while.
 pub(crate) fn shown<T>(run: impl FnOnce(&mut dyn FnMut(Progress) -> ControlFlow<()>) -> T) -> T {
-    const PATIENCE: Duration = Duration::from_millis(300);
-    let is_terminal = std::io::stderr().is_terminal();
+    let err = std::io::stderr();
+    let patience = err.is_terminal().then_some(PATIENCE);
+    shown_on(err, patience, run)
+}
+
+/// As [`shown`], on any sink; never, if there is no patience.
+fn shown_on<T>(
+    mut sink: impl Write,
+    patience: Option<Duration>,
+    run: impl FnOnce(&mut dyn FnMut(Progress) -> ControlFlow<()>) -> T,
+) -> T {
     let start = Instant::now();
     let mut was_shown = false;
     let result = run(&mut |progress: Progress| {
-        if is_terminal && start.elapsed() > PATIENCE {
+        if patience.is_some_and(|p| start.elapsed() >= p) {
             was_shown = true;
             let percent = (progress.fraction * 100.0) as u32;
-            let _ = write!(std::io::stderr().lock(), "\r\x1b[K{percent:3} % {}", progress.stage);
-            let _ = std::io::stderr().flush();
+            let _ = write!(sink, "{CLEAR}{percent:3} % {}", progress.stage);
+            let _ = sink.flush();
         }
         ControlFlow::Continue(())
     });
     if was_shown {
-        let _ = write!(std::io::stderr().lock(), "\r\x1b[K");
+        let _ = write!(sink, "{CLEAR}");
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown_with(patience: Option<Duration>) -> String {
+        let mut sink = Vec::new();
+        let answer = shown_on(&mut sink, patience, |hook| {
+            for (stage, fraction) in [("weld", 0.1), ("build", 0.9)] {
+                assert!(hook(Progress { stage, fraction }).is_continue());
+            }
+            7
+        });
+        assert_eq!(answer, 7);
+        String::from_utf8(sink).expect("text")
+    }
+
+    #[test]
+    fn a_line_of_progress_is_overwritten_and_wiped_away() {
+        assert_eq!(shown_with(Some(Duration::ZERO)), "\r\u{1b}[K 10 % weld\r\u{1b}[K 90 % build\r\u{1b}[K");
+    }
+
+    #[test]
+    fn what_takes_long_is_named_and_wiped_away() {
+        let mut sink = Vec::new();
+        let answer = named_on(&mut sink, Duration::ZERO, "reading", || {
+            std::thread::sleep(Duration::from_millis(200));
+            7
+        });
+        assert_eq!(
+            (answer, String::from_utf8(sink).expect("text").as_str()),
+            (7, "\r\u{1b}[Kreading\r\u{1b}[K")
+        );
+        let mut sink = Vec::new();
+        named_on(&mut sink, Duration::from_secs(3600), "reading", || ());
+        assert_eq!(sink, b"", "at once, and without waiting");
+    }
+
+    #[test]
+    fn what_is_quick_or_seen_by_nobody_shows_nothing() {
+        assert_eq!(shown_with(Some(Duration::from_secs(3600))), "");
+        assert_eq!(shown_with(None), "");
+    }
 }

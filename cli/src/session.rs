@@ -1,7 +1,9 @@
 //! One run: what was asked for, how long each part took, and how it ends.
 
 use meshwright::io::{Place, ReadError};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::json;
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -11,13 +13,60 @@ use std::time::Instant;
 #[derive(Debug, Default)]
 pub(crate) struct Answer {
     /// The fields of the JSON object.
-    pub(crate) json: Map<String, Value>,
-    /// A long list among them, already in JSON: half a million values would take a kilobyte each.
-    pub(crate) list: Option<(&'static str, String)>,
+    pub(crate) json: Fields,
     /// The same for people, on standard output.
     pub(crate) text: String,
     /// Whether the answer is "no" (exit code 1).
     pub(crate) is_no: bool,
+}
+
+/// The fields of a JSON object, in JSON already: in a tree of values, a million records would take gigabytes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Fields {
+    /// What stands between the braces.
+    text: String,
+    /// Nobody asked for JSON: keeps nothing.
+    is_unwanted: bool,
+}
+
+impl Fields {
+    /// The same with one more field.
+    pub(crate) fn with(self, name: &str, value: &impl Serialize) -> Self {
+        if self.is_unwanted { self } else { self.with_text(name, &in_json(value)) }
+    }
+
+    /// The same with an object as one more field.
+    pub(crate) fn with_object(self, name: &str, object: &Self) -> Self {
+        if self.is_unwanted { self } else { self.with_text(name, &format!("{{{}}}", object.text)) }
+    }
+
+    /// The same with all fields of something that is an object in JSON.
+    pub(crate) fn with_all(mut self, value: &impl Serialize) -> Self {
+        if !self.is_unwanted {
+            let object = in_json(value);
+            self.separate();
+            self.text += object.strip_prefix('{').and_then(|o| o.strip_suffix('}')).unwrap_or_default();
+        }
+        self
+    }
+
+    fn with_text(mut self, name: &str, json: &str) -> Self {
+        self.separate();
+        // Writing to a string does not fail.
+        let _ = write!(self.text, "\"{name}\":{json}");
+        self
+    }
+
+    fn separate(&mut self) {
+        if !self.text.is_empty() {
+            self.text.push(',');
+        }
+    }
+}
+
+fn in_json(value: &impl Serialize) -> String {
+    // Fails for maps whose keys are no text, and there are none.
+    serde_json::to_string(value).unwrap_or_else(|_| "null".to_owned())
 }
 
 /// Why there is no answer.
@@ -30,7 +79,7 @@ pub(crate) enum Failure {
     /// The output cannot be written (exit code 4).
     Output(String),
     /// The request was refused (exit code 1), with more fields for the JSON object.
-    Refused { message: String, json: Map<String, Value> },
+    Refused { message: String, json: Fields },
 }
 
 impl Failure {
@@ -39,7 +88,7 @@ impl Failure {
     }
 
     pub(crate) fn refused(message: impl ToString) -> Self {
-        Self::Refused { message: message.to_string(), json: Map::new() }
+        Self::Refused { message: message.to_string(), json: Fields::default() }
     }
 }
 
@@ -85,37 +134,29 @@ impl Session {
         let _ = writeln!(std::io::stderr().lock(), "{message}");
     }
 
-    fn common(&self) -> [(&'static str, Value); 2] {
-        let [read, build, run, write] = self.spent;
-        let timings = json!({ "read": read, "build": build, "run": run, "write": write });
-        [("timings_ms", timings), ("peak_rss_bytes", json!(peak_rss()))]
+    /// No fields yet; what is added is kept if it is to be printed or, as `also` says, wanted for something else.
+    pub(crate) fn fields(&self, also: bool) -> Fields {
+        Fields { text: String::new(), is_unwanted: !self.is_json && !also }
     }
 
     /// The JSON object of an answer in one line, as `--report` writes it too.
-    pub(crate) fn object(
-        &self,
-        mut json: Map<String, Value>,
-        list: Option<&(&'static str, String)>,
-    ) -> String {
-        json.extend(self.common().map(|(k, v)| (k.to_owned(), v)));
-        let fields = Value::Object(json).to_string();
-        match list {
-            // There are fields, so a comma follows.
-            Some((name, items)) => format!("{{\"{name}\":{items},{}\n", &fields[1..]),
-            None => fields + "\n",
-        }
+    pub(crate) fn object(&self, json: Fields) -> String {
+        let [read, build, run, write] = self.spent;
+        let timings = json!({ "read": read, "build": build, "run": run, "write": write });
+        let json = json.with("timings_ms", &timings).with("peak_rss_bytes", &peak_rss());
+        format!("{{{}}}\n", json.text)
     }
 
     /// Prints the result and gives the exit code.
     pub(crate) fn finish(&self, result: Result<Answer, Failure>) -> ExitCode {
-        let (code, json, list, text) = match result {
-            Ok(answer) => (u8::from(answer.is_no), answer.json, answer.list, answer.text),
+        let (code, json, text) = match result {
+            Ok(answer) => (u8::from(answer.is_no), answer.json, answer.text),
             Err(failure) => {
-                let (code, kind, message, mut json, place) = match failure {
+                let (code, kind, message, json, place) = match failure {
                     Failure::Refused { message, json } => (1, "refused", message, json, None),
-                    Failure::Usage(message) => (2, "usage", message, Map::new(), None),
-                    Failure::Input { message, place } => (3, "input", message, Map::new(), place),
-                    Failure::Output(message) => (4, "output", message, Map::new(), None),
+                    Failure::Usage(message) => (2, "usage", message, Fields::default(), None),
+                    Failure::Input { message, place } => (3, "input", message, Fields::default(), place),
+                    Failure::Output(message) => (4, "output", message, Fields::default(), None),
                 };
                 self.say(&format!("error: {message}"));
                 let mut error = json!({ "kind": kind, "message": message });
@@ -124,11 +165,10 @@ impl Session {
                     Some(Place::Byte(n)) => error["byte"] = json!(n),
                     None => {}
                 }
-                json.insert("error".to_owned(), error);
-                (code, json, None, String::new())
+                (code, json.with("error", &error), String::new())
             }
         };
-        let printed = if self.is_json { self.object(json, list.as_ref()) } else { text };
+        let printed = if self.is_json { self.object(json) } else { text };
         let mut out = std::io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             // Nobody reads on: `meshwright ... | head`.

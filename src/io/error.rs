@@ -30,13 +30,13 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum NoteKind {
     /// A coordinate is NaN or infinite; kept.
-    #[error("coordinates that are not finite, kept")]
+    #[error("coordinates that are not finite")]
     NonFiniteCoordinate,
     /// A face index is zero, negative beyond the beginning, or beyond the vertices; kept as an index that names none.
-    #[error("face indices that name no vertex, kept")]
+    #[error("face indices that name no vertex")]
     IndexOutOfRange,
     /// A face has fewer than three corners; kept.
-    #[error("faces of fewer than three corners, kept")]
+    #[error("faces of fewer than three corners")]
     ShortFace,
     /// Some vertices have colours and some have none; those are white.
     #[error("vertices without a colour beside some that have one, white")]
@@ -223,6 +223,12 @@ pub enum WriteError {
     /// A position is NaN or infinite.
     #[error("vertex {vertex} is not finite")]
     NonFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A position is too large for the single precision that binary STL has.
+    #[error("vertex {vertex} is beyond single precision")]
+    BeyondSingle {
         /// The vertex.
         vertex: usize,
     },

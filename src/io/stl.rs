@@ -177,7 +177,7 @@ pub fn write_stl(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
     check_writable(soup)?;
     let single = |v: u32| soup.positions[v as usize].as_vec3();
     if let Some(vertex) = (0..soup.positions.len()).find(|&v| !single(v as u32).is_finite()) {
-        return Err(WriteError::NonFinite { vertex });
+        return Err(WriteError::BeyondSingle { vertex });
     }
     let triangles = triangles(soup);
     let count = u32::try_from(triangles.len())

@@ -160,7 +160,7 @@ fn what_could_not_be_read_back_is_not_written() {
     }
     let far = triangle(vec![0, 1, 2], 1e300);
     assert!(
-        matches!(io::write_stl(&far, &mut Vec::new()), Err(WriteError::NonFinite { vertex: 0 })),
+        matches!(io::write_stl(&far, &mut Vec::new()), Err(WriteError::BeyondSingle { vertex: 0 })),
         "beyond f32"
     );
     struct Full;

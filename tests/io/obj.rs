@@ -43,7 +43,7 @@ fn obj_keeps_bad_faces_in_their_place_and_notes_them() {
         [(NoteKind::IndexOutOfRange, Place::Line(5)), (NoteKind::ShortFace, Place::Line(6))]
     );
     assert_eq!(loaded.notes[0].count, 4);
-    assert_eq!(loaded.notes[0].to_string(), "line 5: face indices that name no vertex, kept (4 in all)");
+    assert_eq!(loaded.notes[0].to_string(), "line 5: face indices that name no vertex (4 in all)");
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Commands that ask where the mesh lies: rays and nearest elements.
 
 use super::in_file;
-use super::look::fields;
 use crate::args::{Closest, Raycast, Target};
-use crate::import;
-use crate::session::{Answer, Failure, Phase, Session};
+use crate::import::{self, Imported};
+use crate::session::{Answer, Failure, Fields, Phase, Session};
+use crate::text::{counted, number, point};
 use meshwright::glam::DVec3;
 use meshwright::{
     ClosestOptions, Crossing, EdgeKey, Element, FaceKey, Feature, Maps, Mesh, MeshIndex, Nearest, Ray,
@@ -67,7 +67,8 @@ pub(super) fn raycast(session: &mut Session, args: &Raycast) -> Result<Answer, F
         }
         _ => return Err(Failure::Usage("--origin and --direction, or --queries".to_owned())),
     };
-    let (mesh, maps, import) = import::mesh_with_maps(session, &args.file, args.strict.strict)?;
+    let Imported { value: mesh, maps, json: import, .. } =
+        import::mesh(session, &args.file, args.strict.strict)?;
     let index = session.timed(Phase::Build, || mesh.index());
     let hits: Vec<Vec<RayHit>> = session.timed(Phase::Run, || {
         if args.first {
@@ -83,7 +84,7 @@ pub(super) fn raycast(session: &mut Session, args: &Raycast) -> Result<Answer, F
     });
     let mut text = String::new();
     for hits in &hits {
-        let _ = writeln!(text, "{} hits", hits.len());
+        let _ = writeln!(text, "{}", counted(hits.len(), "hit"));
         for h in hits {
             let what = match h.crossing {
                 Crossing::Enter => "enters",
@@ -91,10 +92,10 @@ pub(super) fn raycast(session: &mut Session, args: &Raycast) -> Result<Answer, F
                 Crossing::Touch => "touches",
             };
             let feature = numbers.feature(h.feature);
-            let _ = writeln!(text, "t {}: {what} at {}, {feature}", h.t, h.point);
+            let _ = writeln!(text, "t {}: {what} at {}, {feature}", number(h.t), point(h.point));
         }
     }
-    Ok(answer(answers.collect(), args.queries.is_some(), import, text))
+    Ok(answer(session, answers.collect(), args.queries.is_some(), &import, text))
 }
 
 fn hit(numbers: &Numbers<'_>, h: &RayHit) -> Value {
@@ -140,7 +141,8 @@ pub(super) fn closest(session: &mut Session, args: &Closest) -> Result<Answer, F
     if let Some(bad) = points.iter().find(|p| !p.is_finite()) {
         return Err(Failure::refused(format!("the point {bad} is not finite")));
     }
-    let (mesh, maps, import) = import::mesh_with_maps(session, &args.file, args.strict.strict)?;
+    let Imported { value: mesh, maps, json: import, .. } =
+        import::mesh(session, &args.file, args.strict.strict)?;
     let index = session.timed(Phase::Build, || mesh.index());
     let numbers = Numbers::new(&mesh, &maps);
     let found = session
@@ -150,19 +152,21 @@ pub(super) fn closest(session: &mut Session, args: &Closest) -> Result<Answer, F
     let mut text = String::new();
     for f in &found {
         let _ = match f {
-            Some(f) => writeln!(text, "{} at {}, distance {}", f.element, f.point, f.distance),
+            Some(f) => writeln!(text, "{} at {}, distance {}", f.element, point(f.point), number(f.distance)),
             None => writeln!(text, "none"),
         };
     }
     let answers = found.into_iter().map(|found| match found {
         Some(f) => {
-            let mut all = fields(json!({ "point": f.point, "distance": f.distance, "element": f.element }));
-            all.append(&mut fields(f.more));
-            Value::Object(all)
+            let mut all = json!({ "point": f.point, "distance": f.distance, "element": f.element });
+            if let (Value::Object(all), Value::Object(mut more)) = (&mut all, f.more) {
+                all.append(&mut more);
+            }
+            all
         }
         None => json!({ "point": null, "distance": null, "element": null }),
     });
-    let mut answer = answer(answers.collect(), args.queries.is_some(), import, text);
+    let mut answer = answer(session, answers.collect(), args.queries.is_some(), &import, text);
     answer.is_no = is_no;
     Ok(answer)
 }
@@ -205,14 +209,14 @@ fn nearest(
 }
 
 /// One answer as it is, or several in `results`.
-fn answer(answers: Vec<Value>, is_batch: bool, import: Value, text: String) -> Answer {
-    let mut json = if is_batch {
-        fields(json!({ "results": answers }))
+fn answer(session: &Session, answers: Vec<Value>, is_batch: bool, import: &Fields, text: String) -> Answer {
+    let none = session.fields(false);
+    let json = if is_batch {
+        none.with("results", &answers)
     } else {
-        answers.into_iter().next().map(fields).unwrap_or_default()
+        answers.first().map_or(none.clone(), |only| none.with_all(only))
     };
-    json.insert("import".to_owned(), import);
-    Answer { json, text, ..Answer::default() }
+    Answer { json: json.with_object("import", import), text, ..Answer::default() }
 }
 
 /// The numbers of a file of questions, `N` a line, with the number of the line. Blank lines are skipped.

@@ -1,15 +1,16 @@
 //! Commands that write a mesh much as it was read.
 
 use super::in_file;
-use super::look::fields;
 use crate::args::{Convert, Unify};
-use crate::session::{Answer, Failure, Phase, Session};
+use crate::import::Imported;
+use crate::session::{Answer, Failure, Fields, Phase, Session};
+use crate::text::{self, counted};
 use crate::{import, output, progress};
+use meshwright::io::Lost;
 use meshwright::{
     Control, Element, IndexedMesh, Mesh, OutwardOptions, OutwardPart, Record, Report, orient_outward,
     unify_winding,
 };
-use serde_json::{Map, json};
 use std::collections::BTreeSet;
 
 pub(super) fn convert(session: &mut Session, args: &Convert) -> Result<Answer, Failure> {
@@ -26,13 +27,14 @@ fn import_change_write(
     change: impl FnOnce(IndexedMesh) -> IndexedMesh,
 ) -> Result<Answer, Failure> {
     args.output.format()?;
-    let (pool, import) = import::pool(session, &args.file, args.strict.strict)?;
-    let pool = session.timed(Phase::Run, || change(pool));
-    let (vertices, faces) = (pool.vertex_count(), pool.face_count());
+    let Imported { value, json: import, not_carried, .. } =
+        import::pool(session, &args.file, args.strict.strict)?;
+    not_carried.iter().for_each(|line| session.say(line));
+    let pool = session.timed(Phase::Run, || change(value));
+    let size = (pool.vertex_count(), pool.face_count());
     let lost = output::write_mesh(session, &args.output, &pool.into())?;
-    let json = json!({ "vertices": vertices, "faces": faces, "lost": lost, "import": import });
-    let text = format!("wrote {}: {vertices} vertices, {faces} faces\n", args.output.output.display());
-    Ok(Answer { json: fields(json), text, ..Answer::default() })
+    let (json, text) = written(session, args, size, &lost, &import);
+    Ok(Answer { json, text, ..Answer::default() })
 }
 
 /// Imports a mesh, changes it as a mesh, and writes it. The change may have an account.
@@ -42,43 +44,56 @@ pub(super) fn import_edit_write(
     change: impl FnOnce(&mut Mesh) -> Result<Option<Report>, Failure>,
 ) -> Result<Answer, Failure> {
     args.output.format()?;
-    let (mut mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
+    let Imported { value: mut mesh, json: import, not_carried, .. } =
+        import::mesh(session, &args.file, args.strict.strict)?;
+    not_carried.iter().for_each(|line| session.say(line));
     let report = session.timed(Phase::Run, || change(&mut mesh))?;
     let soup = session.timed(Phase::Run, || mesh.to_indexed().into());
     let lost = output::write_mesh(session, &args.output, &soup)?;
-    let json = json!({
-        "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "lost": lost, "import": import,
-    });
-    let mut json = fields(json);
-    let mut list = None;
+    let size = (mesh.vertex_count(), mesh.face_count());
+    let (mut json, last) = written(session, args, size, &lost, &import);
     let mut text = String::new();
     if let Some(report) = report {
-        json.extend(fields(json!({
-            "counts": report.counts(), "steps": report.steps, "not_carried": report.not_carried,
-            "lost_values": import::lost_values(&report),
-        })));
-        list = Some(("defects", serde_json::to_string(&report.records).map_err(Failure::refused)?));
-        for line in import::changes(&report) {
-            text.push_str(&line);
+        json = json
+            .with("counts", &report.counts())
+            .with("steps", &report.steps)
+            .with("not_carried", &report.not_carried)
+            .with("lost_values", &import::lost_values(&report))
+            .with("defects", &report.records);
+        for line in text::changes(&report).into_iter().chain(text::not_carried(&report)) {
+            text += &line;
             text.push('\n');
         }
     }
+    text += &last;
+    Ok(Answer { json, text, is_no: false })
+}
+
+/// What every command says that writes a mesh.
+fn written(
+    session: &Session,
+    args: &Convert,
+    (vertices, faces): (usize, usize),
+    lost: &[Lost],
+    import: &Fields,
+) -> (Fields, String) {
+    let json = session.fields(false).with("vertices", &vertices).with("faces", &faces).with("lost", &lost);
     let destination = args.output.output.display();
-    let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
-    text.push_str(&format!("wrote {destination}: {vertices} vertices, {faces} faces\n"));
-    Ok(Answer { json, list, text, is_no: false })
+    let text = format!("wrote {destination}: {}, {}\n", counted(vertices, "vertex"), counted(faces, "face"));
+    (json.with_object("import", import), text)
 }
 
 pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failure> {
     args.output.format()?;
     let (loaded, outcome) = import::indexed(session, &args.file, args.weld.weld)?;
+    text::not_carried(&outcome.report).iter().for_each(|line| session.say(line));
     let faces = &outcome.maps.faces;
     let unified = session.timed(Phase::Run, || unify_winding(&outcome.value.topology()));
     let unified = unified.map_err(|error| {
         let cycle = |c: &Vec<u32>| c.iter().map(|&f| in_file(faces, f)).collect::<Vec<_>>();
         let cycles: Vec<_> = error.cycles.iter().map(cycle).collect();
-        let json = json!({ "orientable": false, "cycles": cycles });
-        Failure::Refused { message: error.to_string(), json: fields(json) }
+        let json = session.fields(false).with("orientable", &false).with("cycles", &cycles);
+        Failure::Refused { message: error.to_string(), json }
     })?;
     let mut flipped = flipped_faces(&unified.report);
     let mut value = unified.value;
@@ -99,19 +114,18 @@ pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failu
     let mut flipped: Vec<u32> = flipped.into_iter().map(|f| in_file(faces, f)).collect();
     flipped.dedup();
     let lost = output::write_mesh(session, &args.output, &value.into())?;
-    let mut json = Map::from_iter([("orientable".to_owned(), json!(true))]);
-    json.insert("flipped".to_owned(), json!(flipped));
-    json.insert("lost".to_owned(), json!(lost));
-    json.insert("import".to_owned(), import::import_json(&loaded, &outcome.report));
+    let mut json =
+        session.fields(false).with("orientable", &true).with("flipped", &flipped).with("lost", &lost);
     let mut text = String::new();
     if let Some(parts) = parts {
-        for part in &parts {
-            text.push_str(&outward_line(in_file(faces, part.face), part));
-        }
-        let place = |part: &OutwardPart<u32>| OutwardPart { face: in_file(faces, part.face), ..*part };
-        json.insert("parts".to_owned(), json!(parts.iter().map(place).collect::<Vec<_>>()));
+        let parts: Vec<_> =
+            parts.iter().map(|p| OutwardPart { face: in_file(faces, p.face), ..*p }).collect();
+        parts.iter().for_each(|part| text += &outward_line(part));
+        json = json.with("parts", &parts);
     }
-    text.push_str(&format!("wrote {}: {} faces flipped\n", args.output.output.display(), flipped.len()));
+    json = json.with_object("import", &import::import_json(session, &loaded, &outcome.report));
+    let reversed = counted(flipped.len(), "face");
+    text += &format!("wrote {}: {reversed} reversed\n", args.output.output.display());
     Ok(Answer { json, text, ..Answer::default() })
 }
 
@@ -123,7 +137,7 @@ fn flipped_faces(report: &Report) -> BTreeSet<u32> {
     report.records.iter().filter_map(face).collect()
 }
 
-fn outward_line(face: u32, part: &OutwardPart<u32>) -> String {
+fn outward_line(part: &OutwardPart<u32>) -> String {
     let kind = match (part.closed, part.depth % 2) {
         (false, _) => format!("open, direction {:.0} % sure", part.confidence * 100.0),
         (true, _) if part.crosses => "closed, crosses another part".to_owned(),
@@ -131,5 +145,5 @@ fn outward_line(face: u32, part: &OutwardPart<u32>) -> String {
         (true, _) => "cavity".to_owned(),
     };
     let done = if part.reversed { "turned" } else { "left as it is" };
-    format!("part of {} faces from face {face}: {kind}, {done}\n", part.faces)
+    format!("part of {} from face {}: {kind}, {done}\n", counted(part.faces, "face"), part.face)
 }

@@ -2,32 +2,26 @@
 
 use super::in_file;
 use crate::args::{Inspect, Volume};
-use crate::import;
+use crate::import::{self, Imported};
+use crate::progress;
 use crate::session::{Answer, Failure, Phase, Session};
+use crate::text::{counted, number, point};
 use meshwright::cleanup::{self, Facts};
 use meshwright::{HalfedgeKey, Mesh, NotClosed};
-use serde_json::{Map, Value, json};
 use std::fmt::Write;
-
-/// The fields of an object.
-pub(super) fn fields(value: Value) -> Map<String, Value> {
-    match value {
-        Value::Object(fields) => fields,
-        _ => Map::new(),
-    }
-}
 
 pub(super) fn inspect(session: &mut Session, args: &Inspect) -> Result<Answer, Failure> {
     let loaded = import::load(session, &args.file)?;
-    let facts = session.timed(Phase::Run, || cleanup::inspect(&loaded.soup, args.weld.weld))?;
-    let mut json = fields(json!(facts));
-    json.insert("notes".to_owned(), json!(loaded.notes));
+    let facts = session.timed(Phase::Run, || {
+        progress::named("inspecting", || cleanup::inspect(&loaded.soup, args.weld.weld))
+    })?;
+    let json = session.fields(false).with_all(&facts).with("notes", &loaded.notes);
     Ok(Answer { json, text: describe(&facts), ..Answer::default() })
 }
 
 fn describe(f: &Facts) -> String {
     let yes = |b: bool| if b { "yes" } else { "no" };
-    let degrees: Vec<String> = f.face_degrees.iter().map(|(d, n)| format!("{n} of {d} corners")).collect();
+    let degrees: Vec<String> = f.face_degrees.iter().map(|(&d, &n)| of_degree(d, n)).collect();
     let mut rows: Vec<(&str, String)> = vec![
         ("vertices", format!("{} ({} used after welding)", f.vertices, f.used_vertices)),
         (
@@ -48,9 +42,9 @@ fn describe(f: &Facts) -> String {
         ("Euler characteristic", f.euler_characteristic.to_string()),
     ];
     rows.extend(f.genus.map(|g| ("genus", g.to_string())));
-    rows.push(("area", f.area.to_string()));
-    rows.extend(f.volume.map(|v| ("volume", v.to_string())));
-    rows.extend(f.bbox.map(|b| ("box", format!("{} to {}", b.min, b.max))));
+    rows.push(("area", number(f.area)));
+    rows.extend(f.volume.map(|v| ("volume", number(v))));
+    rows.extend(f.bbox.map(|b| ("box", format!("{} to {}", point(b.min), point(b.max)))));
     let defects = [
         ("edges with 3 or more faces", f.nonmanifold_edges),
         ("pinched vertices", f.nonmanifold_vertices),
@@ -71,10 +65,19 @@ fn describe(f: &Facts) -> String {
     text
 }
 
+/// The faces of one degree, by their name if they have one.
+fn of_degree(degree: usize, count: usize) -> String {
+    match degree {
+        3 => counted(count, "triangle"),
+        4 => counted(count, "quad"),
+        _ => format!("{count} of {}", counted(degree, "corner")),
+    }
+}
+
 fn boundary(f: &Facts) -> String {
     match f.boundary_edges {
         0 => String::new(),
-        n => format!(", {n} naked edges in {} pieces", f.boundary_loops),
+        n => format!(", {} in {}", counted(n, "naked edge"), counted(f.boundary_loops, "piece")),
     }
 }
 
@@ -97,13 +100,14 @@ pub(super) fn is_closed(session: &mut Session, args: &Inspect) -> Result<Answer,
     } else {
         let list = |edges: &[[u32; 2]], what: &str| match edges {
             [] => String::new(),
-            [[a, b], rest @ ..] => format!("{} edges with {what}, {a}-{b} first\n", rest.len() + 1),
+            [[a, b], ..] => format!("{} with {what}, {a}-{b} first\n", counted(edges.len(), "edge")),
         };
         format!("not closed\n{}{}", list(&naked, "one face"), list(&more, "three or more faces"))
     };
-    let witnesses = json!({ "empty": is_empty, "boundary_edges": naked, "nonmanifold_edges": more });
-    let json = Map::from_iter([("closed".to_owned(), json!(closed)), ("witnesses".to_owned(), witnesses)]);
-    Ok(Answer { json, text, is_no: !closed, ..Answer::default() })
+    let witnesses = session.fields(false).with("empty", &is_empty);
+    let witnesses = witnesses.with("boundary_edges", &naked).with("nonmanifold_edges", &more);
+    let json = session.fields(false).with("closed", &closed).with_object("witnesses", &witnesses);
+    Ok(Answer { json, text, is_no: !closed })
 }
 
 pub(super) fn naked_edges(session: &mut Session, args: &Inspect) -> Result<Answer, Failure> {
@@ -112,33 +116,39 @@ pub(super) fn naked_edges(session: &mut Session, args: &Inspect) -> Result<Answe
     for v in naked.loops.iter_mut().chain(&mut naked.chains).flatten() {
         *v = in_file(&outcome.maps.vertices, *v);
     }
-    let mut text = format!("{} loops and {} chains of naked edges\n", naked.loops.len(), naked.chains.len());
+    let [loops, chains] =
+        [(&naked.loops, "loop"), (&naked.chains, "chain")].map(|(l, noun)| counted(l.len(), noun));
+    let mut text = format!("{loops} and {chains} of naked edges\n");
     let all = naked.loops.iter().map(|l| ("loop", l)).chain(naked.chains.iter().map(|c| ("chain", c)));
     for (kind, vertices) in all {
         let shown: Vec<String> = vertices.iter().take(10).map(u32::to_string).collect();
         let more = if vertices.len() > 10 { " ..." } else { "" };
-        let _ = writeln!(text, "{kind} of {} vertices: {}{more}", vertices.len(), shown.join(" "));
+        let _ = writeln!(text, "{kind} of {}: {}{more}", counted(vertices.len(), "vertex"), shown.join(" "));
     }
-    Ok(Answer { json: fields(json!(naked)), text, ..Answer::default() })
+    Ok(Answer { json: session.fields(false).with_all(&naked), text, ..Answer::default() })
 }
 
 pub(super) fn volume(session: &mut Session, args: &Volume) -> Result<Answer, Failure> {
-    let (mesh, import) = import::mesh(session, &args.file, args.strict.strict)?;
+    let Imported { value: mesh, json: import, .. } = import::mesh(session, &args.file, args.strict.strict)?;
     let measured = session
         .timed(Phase::Run, || mesh.closed().map(|solid| (solid.volume(), solid.area(), solid.centroid())));
-    let (volume, area, centroid) = measured.map_err(|error| {
-        let mut json =
-            Map::from_iter([("closed".to_owned(), json!(false)), ("import".to_owned(), import.clone())]);
-        if let NotClosed::Open { boundary } = &error {
-            json.insert("boundary_edges".to_owned(), json!(boundary.len()));
-            json.insert("witness".to_owned(), json!(boundary.first().map(|&h| ends(&mesh, h))));
+    let fields = session.fields(false);
+    let (volume, area, centroid) = match measured {
+        Ok(measured) => measured,
+        Err(error) => {
+            let mut json = fields.with("closed", &false).with_object("import", &import);
+            if let NotClosed::Open { boundary } = &error {
+                json = json.with("boundary_edges", &boundary.len());
+                json = json.with("witness", &boundary.first().map(|&h| ends(&mesh, h)));
+            }
+            return Err(Failure::Refused { message: format!("no volume: {error}"), json });
         }
-        Failure::Refused { message: format!("no volume: {error}"), json }
-    })?;
-    let json = json!({ "volume": volume, "area": area, "centroid": centroid, "import": import });
-    let center = centroid.map_or("none: the volume is zero".to_owned(), |c| c.to_string());
-    let text = format!("volume    {volume}\narea      {area}\ncentroid  {center}\n");
-    Ok(Answer { json: fields(json), text, ..Answer::default() })
+    };
+    let json = fields.with("volume", &volume).with("area", &area).with("centroid", &centroid);
+    let json = json.with_object("import", &import);
+    let center = centroid.map_or("none: the volume is zero".to_owned(), point);
+    let text = format!("volume    {}\narea      {}\ncentroid  {center}\n", number(volume), number(area));
+    Ok(Answer { json, text, ..Answer::default() })
 }
 
 /// Where a half-edge lies.

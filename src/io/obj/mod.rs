@@ -40,7 +40,7 @@ use std::path::Path;
 /// let loaded = read_obj(text, &Limits::default())?;
 /// assert_eq!(&loaded.soup.polygons[0], &[0, 1, 2]);
 /// assert_eq!(&loaded.soup.polygons[1], &[0, 1, PolygonSoup::NO_VERTEX]);
-/// assert_eq!(loaded.notes[0].to_string(), "line 5: face indices that name no vertex, kept");
+/// assert_eq!(loaded.notes[0].to_string(), "line 5: face indices that name no vertex");
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read_obj(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
