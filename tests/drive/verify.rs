@@ -297,6 +297,13 @@ impl World {
                 equal("uv", (to, is), (to, was))?;
             }
         }
+        for &((f, v), both) in &after.means {
+            let v = v.key(&done.vertices);
+            let mean: DVec2 = both.map(|f| *before.value(data.uv, old[&(f, v)])).iter().sum::<DVec2>() * 0.5;
+            let is = *mesh.value(data.uv, new[&(f.key(&done.faces), v)]);
+            equal("mean uv", (is - mean).length() <= 1e-12 * (1.0 + mean.length()), true)
+                .map_err(|e| format!("{e}: {is} for {mean} at {v:?}"))?;
+        }
         for h in mesh.halfedges().filter(|&h| !mesh.is_boundary(h)) {
             equal("finite uv", mesh.value(data.uv, h).is_finite(), true)?;
         }
