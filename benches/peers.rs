@@ -10,7 +10,7 @@ mod shapes;
 
 use cpu_time::ThreadTime;
 use meshwright::glam::DVec3;
-use meshwright::{IndexedMesh, Mesh};
+use meshwright::{IndexedMesh, Mesh, Scheme, SmoothMethod, SmoothOptions, SubdivideOptions, WeldOptions};
 use std::error::Error;
 use std::hint::black_box;
 use std::time::Duration;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let repeats = value("--repeats").map_or(Ok(5), |r| r.parse())?;
     match value("--time") {
-        Some(file) => time(&from_raw(&fs::read(file)?)?, repeats),
+        Some(file) => time(&shapes::from_raw(&fs::read(file)?)?, repeats),
         None => time(&shapes::icosphere(6), repeats),
     }
     Ok(())
@@ -42,19 +42,6 @@ fn to_raw(pool: &IndexedMesh) -> Vec<u8> {
     raw.extend(pool.positions().iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
     raw.extend(pool.polygons().corners().iter().flat_map(|c| c.to_le_bytes()));
     raw
-}
-
-fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn Error>> {
-    let word = |i: usize| raw[8 * i..8 * i + 8].try_into().map(u64::from_le_bytes);
-    let (vertices, triangles) = (word(0)? as usize, word(1)? as usize);
-    let (points, indices) = raw[16..].split_at(24 * vertices);
-    let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
-    let points =
-        points.chunks_exact(24).map(|p| DVec3::new(number(&p[..8]), number(&p[8..16]), number(&p[16..])));
-    let index = |b: &[u8]| u32::from_le_bytes(b.try_into().expect("four bytes"));
-    let corners = indices.chunks_exact(12).map(|t| [index(&t[..4]), index(&t[4..8]), index(&t[8..])]);
-    let corners: Vec<[u32; 3]> = corners.take(triangles).collect();
-    Ok(IndexedMesh::from_triangles(points.collect(), &corners)?)
 }
 
 /// The least processor time of several runs, as the peers measure it.
@@ -112,6 +99,25 @@ fn time(pool: &IndexedMesh, repeats: usize) {
     let (boundary, count) = best(repeats, || mesh.boundary_halfedges().count());
     print("boundary", nanos(boundary) / mesh.edge_count() as f64, "ns/edge");
     print("boundary_edges", count as f64, "edges");
+    for (name, scheme) in [
+        ("midpoint", Scheme::Midpoint),
+        ("loop", Scheme::Loop),
+        ("catmull_clark", Scheme::CatmullClark),
+        ("sqrt3", Scheme::Sqrt3),
+    ] {
+        let options = || SubdivideOptions { scheme, ..Default::default() };
+        let (took, fine) = best(repeats, || mesh.subdivide(options()).expect("subdivided"));
+        print(name, took.as_secs_f64(), "s");
+        drop(fine);
+    }
+    for (name, method) in [("laplacian", SmoothMethod::Laplacian), ("cotangent", SmoothMethod::Cotangent)] {
+        let mut mesh = mesh.clone();
+        let options = || SmoothOptions { method, iterations: 10, ..Default::default() };
+        let (took, _) = best(repeats, || mesh.smooth(options()).expect("smoothed"));
+        print(name, took.as_secs_f64() / 10.0, "s/iteration");
+    }
+    let (took, _) = best(repeats, || mesh.weld(WeldOptions { tolerance: 1e-9, ..Default::default() }));
+    print("weld", took.as_secs_f64(), "s");
     let (back, pool) = best(repeats, || mesh.to_indexed());
     print("to_indexed", nanos(back) / pool.face_count() as f64, "ns/face");
 }

@@ -67,8 +67,8 @@ impl Mesh {
     /// Builds the half-edge mesh of a vertex pool.
     ///
     /// The `i`-th of [`vertices`](Mesh::vertices) is vertex `i`, the `i`-th of [`faces`](Mesh::faces) is face `i`, and
-    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. Given normals come
-    /// along. O(corners).
+    /// each face keeps its first corner: [`to_indexed`](Mesh::to_indexed) gives back an equal pool. All
+    /// attributes come along. O(corners).
     ///
     /// # Errors
     /// [`BuildError`] with every defect when the faces do not form an oriented manifold.
@@ -95,7 +95,7 @@ impl Mesh {
     }
 
     /// The vertex pool of the mesh, in the order of the input for what survived, with each face's first corner kept.
-    /// Carried normals come along. O(slots).
+    /// Carried attributes come along; user columns are [exported](Self::export_column) apart. O(slots).
     pub fn to_indexed(&self) -> IndexedMesh {
         let order = self.vertices.in_user_order();
         let mut number = vec![0u32; self.vertices.slot_count()];
@@ -107,9 +107,8 @@ impl Mesh {
             let corners = self.loop_slots(self.face_halfedge[f as usize]);
             polygons.push(corners.map(|h| number[self.origin[h as usize] as usize]));
         }
-        let pick = |column: &Vec<DVec3>| order.iter().map(|&v| column[v as usize]).collect();
-        let normals = self.normal_column().map(|n| order.iter().filter_map(|&v| n.get(v).copied()).collect());
-        IndexedMesh::trusted(pick(&self.positions), polygons, normals)
+        let positions = order.iter().map(|&v| self.positions[v as usize]).collect();
+        IndexedMesh::trusted(positions, polygons, None).carrying(self.ordered_attributes(&order))
     }
 }
 
@@ -132,6 +131,11 @@ impl From<&Mesh> for IndexedMesh {
 /// Lays out the mesh of a pairing without conflicts and 3+ edges; `None` if a vertex is pinched or a face is there
 /// twice.
 pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
+    lay_out(pool, pairing).filter(each_vertex_has_one_fan)
+}
+
+/// The same for faces that are known to have neither pinches nor repeats.
+pub(crate) fn lay_out(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
     let polygons = pool.polygons();
     let halfedges = 2 * (pairing.edges + 1);
     let mut mesh = Mesh {
@@ -166,12 +170,10 @@ pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
             before = h;
         }
     }
-    if !link_boundary(&mut mesh, &pairing.open) || !each_vertex_has_one_fan(&mesh) {
+    if !link_boundary(&mut mesh, &pairing.open) {
         return None;
     }
-    if let Some(normals) = pool.normals() {
-        mesh.replace_normals(shifted(normals));
-    }
+    mesh.adopt(pool.attributes(), |corner| pairing.use_of[corner] + 2);
     Some(mesh)
 }
 

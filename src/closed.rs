@@ -39,7 +39,7 @@ pub enum NotClosed {
 }
 
 impl Mesh {
-    /// Proves that the mesh has a face and no boundary. O(edges).
+    /// Proves that the mesh has a face and no boundary. O(slots).
     ///
     /// # Errors
     /// [`NotClosed`], with every boundary half-edge.

@@ -1,6 +1,8 @@
 //! The second rung: a valid vertex pool.
 
+use crate::attributes::{Attributes, from_soup};
 use crate::geometry::normals::{self, NormalWeight};
+use crate::report::Attribute;
 use crate::{MAX_ELEMENTS, PolygonSoup, Polygons};
 use glam::DVec3;
 use std::fmt;
@@ -23,9 +25,9 @@ use std::fmt;
 pub struct IndexedMesh {
     positions: Vec<DVec3>,
     polygons: Polygons,
-    /// Given vertex normals, one per position.
+    /// Fit the positions and faces, and are finite; absent when there are none.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    normals: Option<Vec<DVec3>>,
+    attributes: Option<Box<Attributes>>,
 }
 
 /// Why positions and faces are not a valid vertex pool: every reason, in the order of vertices, then faces.
@@ -109,6 +111,66 @@ pub enum IndexedDefect {
         /// The vertex.
         vertex: u32,
     },
+    /// An attribute is not one per vertex, corner or face.
+    #[error("{given} values of {attribute}, not {wanted}")]
+    AttributeCount {
+        /// Which.
+        attribute: Attribute,
+        /// The number of values given.
+        given: usize,
+        /// The number of vertices, corners or faces.
+        wanted: usize,
+    },
+    /// A part of a colour is NaN or infinite.
+    #[error("the colour of vertex {vertex} is not finite")]
+    NonFiniteColor {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// A value at a corner is NaN or infinite.
+    #[error("{attribute} at corner {corner} of face {face} are not finite")]
+    NonFiniteValue {
+        /// Which.
+        attribute: Attribute,
+        /// The face.
+        face: u32,
+        /// The corner, counted from the face's first.
+        corner: u32,
+    },
+    /// A corner refers to a value that does not exist.
+    #[error("corner {corner} of face {face} refers to value {index} of {attribute}, which does not exist")]
+    NoSuchValue {
+        /// Which.
+        attribute: Attribute,
+        /// The face.
+        face: u32,
+        /// The corner, counted from the face's first.
+        corner: u32,
+        /// The index it holds.
+        index: u32,
+    },
+    /// A face is in a group that does not exist.
+    #[error("face {face} is in group {group}, which does not exist")]
+    NoSuchGroup {
+        /// The face.
+        face: u32,
+        /// The group.
+        group: u32,
+    },
+    /// A soup's group runs past the last face.
+    #[error("group {group} runs to face {end}, which does not exist")]
+    GroupPastFaces {
+        /// The group's place in the soup's list.
+        group: usize,
+        /// The end of its run.
+        end: usize,
+    },
+    /// A face is in two of a soup's groups.
+    #[error("face {face} is in two groups")]
+    FaceInTwoGroups {
+        /// The face.
+        face: u32,
+    },
     /// More than [`MAX_ELEMENTS`] vertices, faces or corners.
     #[error("{elements} elements are more than a mesh can number")]
     TooLarge {
@@ -124,7 +186,7 @@ impl IndexedMesh {
     /// [`IndexedError`] with every defect. O(corners).
     pub fn new(positions: Vec<DVec3>, polygons: Polygons) -> Result<Self, IndexedError> {
         match defects(&positions, &polygons) {
-            defects if defects.is_empty() => Ok(Self { positions, polygons, normals: None }),
+            defects if defects.is_empty() => Ok(Self { positions, polygons, attributes: None }),
             defects => Err(IndexedError { defects }),
         }
     }
@@ -137,28 +199,52 @@ impl IndexedMesh {
         Self::new(positions, Polygons::from_triangles(triangles))
     }
 
-    /// The same mesh with given vertex normals, kept as they are.
+    /// The same mesh with these attributes in place of those it carried.
+    ///
+    /// # Errors
+    /// [`IndexedError`] with every list that has not one entry per vertex, corner or face, every value that is not
+    /// finite, and every face in a group that does not exist. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// use meshwright::{Attributes, IndexedDefect, IndexedMesh, glam::DVec3};
+    /// let pool = IndexedMesh::from_triangles(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+    /// let vertex_colors = Some(vec![[1.0; 4], [0.5; 4], [f32::NAN; 4]]);
+    /// let refused = pool.with_attributes(Attributes { vertex_colors, ..Attributes::default() }).unwrap_err();
+    /// assert_eq!(refused.defects, [IndexedDefect::NonFiniteColor { vertex: 2 }]);
+    /// # Ok::<(), meshwright::IndexedError>(())
+    /// ```
+    pub fn with_attributes(self, attributes: Attributes) -> Result<Self, IndexedError> {
+        match attributes.defects(self.positions.len(), &self.polygons) {
+            defects if defects.is_empty() => Ok(self.carrying(attributes)),
+            defects => Err(IndexedError { defects }),
+        }
+    }
+
+    /// The same mesh with given vertex normals, kept as they are; other attributes stay.
     ///
     /// # Errors
     /// [`IndexedDefect::NormalCount`] or [`IndexedDefect::NonFiniteNormal`].
-    pub fn with_normals(self, normals: Vec<DVec3>) -> Result<Self, IndexedError> {
-        let defects: Vec<_> = if normals.len() != self.positions.len() {
-            vec![IndexedDefect::NormalCount { normals: normals.len(), vertices: self.positions.len() }]
-        } else {
-            let bad = normals.iter().enumerate().filter(|(_, n)| !n.is_finite());
-            bad.map(|(i, _)| IndexedDefect::NonFiniteNormal { vertex: i as u32 }).collect()
-        };
-        if defects.is_empty() {
-            Ok(Self { normals: Some(normals), ..self })
-        } else {
-            Err(IndexedError { defects })
-        }
+    pub fn with_normals(mut self, normals: Vec<DVec3>) -> Result<Self, IndexedError> {
+        let attributes = Attributes { vertex_normals: Some(normals), ..self.take_attributes() };
+        self.with_attributes(attributes)
     }
 
     /// A pool whose producer has already seen to every promise.
     pub(crate) fn trusted(positions: Vec<DVec3>, polygons: Polygons, normals: Option<Vec<DVec3>>) -> Self {
         debug_assert_eq!(defects(&positions, &polygons), []);
-        Self { positions, polygons, normals }
+        let bare = Self { positions, polygons, attributes: None };
+        match normals {
+            None => bare,
+            Some(_) => bare.carrying(Attributes { vertex_normals: normals, ..Attributes::NONE }),
+        }
+    }
+
+    /// The pool with attributes whose producer has already seen to every promise.
+    pub(crate) fn carrying(self, attributes: Attributes) -> Self {
+        debug_assert_eq!(attributes.defects(self.positions.len(), &self.polygons), []);
+        let attributes = (!attributes.is_empty()).then(|| Box::new(attributes));
+        Self { attributes, ..self }
     }
 
     /// Vertex positions.
@@ -171,9 +257,19 @@ impl IndexedMesh {
         &self.polygons
     }
 
+    /// What it carries beside positions and faces.
+    pub fn attributes(&self) -> &Attributes {
+        static NONE: Attributes = Attributes::NONE;
+        self.attributes.as_deref().unwrap_or(&NONE)
+    }
+
+    fn take_attributes(&mut self) -> Attributes {
+        self.attributes.take().map_or(Attributes::NONE, |a| *a)
+    }
+
     /// The vertex normals that were given, if any were.
     pub fn normals(&self) -> Option<&[DVec3]> {
-        self.normals.as_deref()
+        self.attributes().vertex_normals.as_deref()
     }
 
     /// The number of vertices, isolated ones included.
@@ -195,7 +291,7 @@ impl IndexedMesh {
         normals::vertex_normals(&self.positions, &self.polygons, weight)
     }
 
-    /// Applies `f` to every position, in order.
+    /// Applies `f` to every position, in order. Attributes stay as they are, normals included.
     ///
     /// # Errors
     /// [`IndexedDefect::NonFinitePosition`] for every result that is not finite; then nothing has changed.
@@ -221,37 +317,54 @@ impl IndexedMesh {
         Ok(())
     }
 
-    /// The same mesh with the winding of every face reversed (each keeps its first corner) and given normals negated.
+    /// The same mesh with the winding of every face reversed (each keeps its first corner), and given normals, of
+    /// vertices and of corners, negated. Corner data moves with its corners.
     pub fn reversed(mut self) -> Self {
         for f in 0..self.polygons.len() {
             self.polygons.reverse(f);
         }
-        for n in self.normals.iter_mut().flatten() {
-            *n = -*n;
+        if let Some(attributes) = &mut self.attributes {
+            for face in self.polygons.starts().windows(2) {
+                attributes.reverse_corners(face[0]..face[1]);
+            }
+            attributes.negate_normals();
         }
         self
     }
 
-    /// Positions, faces and given normals.
-    pub fn into_parts(self) -> (Vec<DVec3>, Polygons, Option<Vec<DVec3>>) {
-        (self.positions, self.polygons, self.normals)
+    /// Positions, faces and attributes.
+    pub fn into_parts(mut self) -> (Vec<DVec3>, Polygons, Attributes) {
+        let attributes = self.take_attributes();
+        (self.positions, self.polygons, attributes)
     }
 }
 
 impl TryFrom<PolygonSoup> for IndexedMesh {
     type Error = IndexedError;
 
-    /// Checks a soup. Colours, corner data and groups are left behind.
-    fn try_from(soup: PolygonSoup) -> Result<Self, IndexedError> {
-        let mesh = Self::new(soup.positions, soup.polygons)?;
-        if soup.vertex_normals.is_empty() { Ok(mesh) } else { mesh.with_normals(soup.vertex_normals) }
+    /// Checks a soup, attributes included: a value that is not finite, an index that names none, groups that overlap or
+    /// run past the faces are refused. Runs of one name and material become one group; a group without both is none.
+    fn try_from(mut soup: PolygonSoup) -> Result<Self, IndexedError> {
+        let (attributes, bad) = from_soup(&mut soup);
+        let mut defects = defects(&soup.positions, &soup.polygons);
+        defects.extend(attributes.defects(soup.positions.len(), &soup.polygons));
+        defects.extend(bad);
+        if !defects.is_empty() {
+            return Err(IndexedError { defects });
+        }
+        let bare = Self { positions: soup.positions, polygons: soup.polygons, attributes: None };
+        Ok(bare.carrying(attributes))
     }
 }
 
 impl From<IndexedMesh> for PolygonSoup {
+    /// Corners of a vertex with equal values share one, and so do neighbouring corners of a face; values stand in the
+    /// order of first use.
     fn from(mesh: IndexedMesh) -> Self {
-        let vertex_normals = mesh.normals.unwrap_or_default();
-        Self { vertex_normals, ..Self::new(mesh.positions, mesh.polygons) }
+        let (positions, polygons, attributes) = mesh.into_parts();
+        let mut soup = Self::new(positions, polygons);
+        attributes.into_soup(&mut soup);
+        soup
     }
 }
 

@@ -11,7 +11,8 @@
 //! | [`Closed`] | no boundary: the door to volume | [`NotClosed`] |
 //!
 //! [`cleanup::clean`] goes from any soup to a valid `Mesh` and says what it changed.
-//! The [design page](design) has the module graph and the numbered invariants.
+//! The [design page](design) has the module graph and the numbered invariants, the [walking page](walking) the orders
+//! of walks and how to edit while walking.
 //!
 //! Lengths are in the units of the input; angles are in radians unless a name says degrees. Nothing is random and
 //! nothing depends on hash order or on the number of threads.
@@ -21,6 +22,7 @@
 //! `rayon`: bulk work on several threads; results are the same with and without.
 
 mod arena;
+mod attributes;
 mod build;
 pub mod cleanup;
 mod closed;
@@ -37,12 +39,17 @@ mod key;
 mod matching;
 mod mesh;
 mod parallel;
+mod query;
 mod report;
 mod soup;
 mod topology;
+mod traverse;
 mod validate;
 mod walk;
+#[doc = include_str!("walking.md")]
+pub mod walking {}
 
+pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
 pub use build::{BuildDefect, BuildError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
@@ -56,17 +63,29 @@ pub use edit::{
     SplitFace, SplitFaceError, SplitVertex, SplitVertexError, StitchError, Stitched, TriangulateFaceError,
     TriangulatedFace,
 };
+pub use geometry::deform::{DeformError, DeformOptions};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
+pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
+pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
+pub use geometry::transform::TransformError;
+pub use geometry::weld::{BadAngle, UnweldError, UnweldOptions, WeldOptions};
 pub use glam;
 pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
+pub use query::{
+    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, OutwardError,
+    OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, Side, SolidIndex, TurnedOutward,
+    orient_outward,
+};
 pub use report::{
-    Attribute, Element, Kind, MapMismatch, Maps, Outcome, Record, Relation, Report, Step, StepSummary,
+    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
+    Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
 pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 
 /// The README's program runs.

@@ -1,10 +1,10 @@
 //! The third rung: the half-edge mesh, its storage and its accessors.
 
 use crate::arena::Arena;
-use crate::column::{Column, Columns, Event, Kind, Rule, Store};
+use crate::attributes::Carried;
+use crate::column::{Columns, Kind};
 use crate::edit::changes::Changes;
 use crate::edit::undo::Undo;
-use crate::geometry::direction;
 use crate::matching::NONE;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 use glam::DVec3;
@@ -55,15 +55,15 @@ pub struct Mesh {
     pub(crate) positions: Vec<DVec3>,
     /// User data.
     pub(crate) columns: Columns,
-    /// The column of the normals the mesh carries, if it does; finite.
-    pub(crate) normals: Option<Column<VertexKey, DVec3>>,
+    /// Which of the columns hold the attributes that files know; finite.
+    pub(crate) carried: Carried,
     /// What was overwritten since the oldest checkpoint, if there is one.
     pub(crate) undo: Option<Box<Undo>>,
     /// What edits did, if somebody listens.
     pub(crate) changes: Option<Box<Changes>>,
 }
 
-/// Why a position or a normal was not set.
+/// Why a position was not set.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SetError {
@@ -71,7 +71,7 @@ pub enum SetError {
     #[error("{0:?} is not a vertex of the mesh")]
     Missing(VertexKey),
     /// The value is NaN or infinite.
-    #[error("the value for {0:?} is not finite")]
+    #[error("the position for {0:?} is not finite")]
     NonFinite(VertexKey),
 }
 
@@ -150,14 +150,6 @@ impl Mesh {
         position, get_position(self, v: VertexKey => vertex_slot) -> DVec3 { self.positions[v as usize] }
     }
 
-    read! {
-        /// The normal a vertex carries, if the mesh carries normals: one that was given, or
-        /// [computed](Self::compute_normals). Moving vertices does not change it.
-        normal, get_normal(self, v: VertexKey => vertex_slot) -> Option<DVec3> {
-            self.normal_column().and_then(|n| n.get(v).copied())
-        }
-    }
-
     /// Moves a vertex.
     ///
     /// # Errors
@@ -184,37 +176,25 @@ impl Mesh {
         Ok(())
     }
 
-    /// Sets the normal of a vertex; if the mesh carried none, all others become zero.
-    ///
-    /// # Errors
-    /// [`SetError`] on a dead key or a normal that is not finite; nothing has changed then.
-    pub fn set_normal(&mut self, v: VertexKey, normal: DVec3) -> Result<(), SetError> {
-        let slot = self.vertex_slot(v).ok_or(SetError::Missing(v))?;
-        if !normal.is_finite() {
-            return Err(SetError::NonFinite(v));
+    /// The one door for bulk writes of positions: a whole column by slot, all or nothing. Entries of dead slots mean
+    /// nothing. Refused by the first vertex in storage order.
+    pub(crate) fn replace_positions(&mut self, new: Vec<DVec3>) -> Result<(), SetError> {
+        debug_assert_eq!(new.len(), self.vertices.slot_count());
+        let bad = |&v: &u32| !new.get(v as usize).is_some_and(|p| p.is_finite());
+        if let Some(v) = self.vertices.live().find(bad) {
+            return Err(SetError::NonFinite(self.vertices.key(v)));
         }
-        let column = self.normals.unwrap_or_else(|| self.add_vertex_column(DVec3::ZERO, normal_rule()));
-        self.normals = Some(column);
-        self.set_value(column, v, normal).map(|_| ()).map_err(|_| SetError::Missing(self.vertices.key(slot)))
-    }
-
-    pub(crate) fn normal_column(&self) -> Option<&Store<DVec3>> {
-        self.columns.store(Kind::Vertex, self.normals?.index)
-    }
-
-    /// Lets the mesh carry these normals, given by slot.
-    pub(crate) fn replace_normals(&mut self, normals: Vec<DVec3>) {
-        match self.normals {
-            Some(column) => {
-                for v in self.vertices.live().collect::<Vec<_>>() {
-                    self.write_value(Kind::Vertex, column.index, v, normals[v as usize]);
-                }
-            }
-            None => {
-                let store = Store::of(normals, DVec3::ZERO, normal_rule());
-                self.normals = Some(Column::new(self.columns.add(Kind::Vertex, store)));
+        if self.undo.is_none() && self.changes.is_none() && self.columns.none_on(Kind::Vertex) {
+            self.positions = new;
+            return Ok(());
+        }
+        // Somebody remembers, listens or is moved along.
+        for v in self.vertices.live().collect::<Vec<_>>() {
+            if self.positions[v as usize] != new[v as usize] {
+                self.write_position(v, new[v as usize]);
             }
         }
+        Ok(())
     }
 
     read! {
@@ -393,20 +373,9 @@ impl Default for Mesh {
             face_halfedge: vec![NONE],
             positions: vec![DVec3::ZERO],
             columns: Columns::default(),
-            normals: None,
+            carried: Carried::default(),
             undo: None,
             changes: None,
         }
     }
-}
-
-/// Normals are mixed like any vectors and brought back to unit length; moving a vertex leaves its normal as it is.
-fn normal_rule() -> Rule<DVec3> {
-    Rule::custom(|event, sources: &[(&DVec3, f64)]| match (event, sources) {
-        (Event::Move, [(normal, _), ..]) => **normal,
-        _ => {
-            let sum: DVec3 = sources.iter().map(|&(&normal, weight)| direction(normal) * weight).sum();
-            direction(sum)
-        }
-    })
 }

@@ -27,6 +27,8 @@ pub enum Element {
     Face(u32),
     /// An edge by the two vertices it joins, the lower index first.
     Edge([u32; 2]),
+    /// A corner by its face and its number in it, from 0.
+    Corner([u32; 2]),
 }
 
 impl fmt::Display for Element {
@@ -35,6 +37,7 @@ impl fmt::Display for Element {
             Self::Vertex(v) => write!(f, "vertex {v}"),
             Self::Face(face) => write!(f, "face {face}"),
             Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
+            Self::Corner([face, corner]) => write!(f, "corner {corner} of face {face}"),
         }
     }
 }
@@ -94,6 +97,8 @@ named! {
         PinchedVertex = "pinched_vertex",
         /// An edge that doubled another between the same two vertices; a vertex was put at its midpoint.
         ParallelEdge = "parallel_edge",
+        /// An edge at which the surface turns by more than an angle; parted.
+        SharpEdge = "sharp_edge",
     }
 }
 
@@ -116,6 +121,14 @@ named! {
         CutEdges = "cut_edges",
         /// Splitting of vertices so that each has one fan.
         SplitVertices = "split_vertices",
+        /// Turning of whole parts outward.
+        TurnOutward = "turn_outward",
+        /// Parting of sharp edges.
+        Unweld = "unweld",
+        /// Cutting of polygons into triangles by the shared rule.
+        Triangulate = "triangulate",
+        /// One or more levels of subdivision.
+        Subdivide = "subdivide",
     }
 }
 
@@ -132,7 +145,37 @@ named! {
         TextureCoordinates = "texture_coordinates",
         /// Groups and materials.
         Groups = "groups",
+        /// The names of material files.
+        MaterialFiles = "material_files",
     }
+}
+
+named! {
+    /// Why a value of an attribute was not carried.
+    LossReason {
+        /// It is NaN or infinite: a vertex normal becomes zero, a vertex colour white, a corner has none.
+        NonFinite = "non_finite",
+        /// The corner refers to a value that does not exist, and has none.
+        NoSuchValue = "no_such_value",
+        /// Vertices with different values became one, and the lowest vertex's was kept.
+        Merged = "merged",
+        /// Vertex normals became normals of corners, and no corner names the vertex.
+        NoCorner = "no_corner",
+        /// The face is in two groups, and stays in the one that begins first.
+        TwoGroups = "two_groups",
+    }
+}
+
+/// A value of an attribute that was not carried, while others of it were.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LostValue {
+    /// Of which attribute.
+    pub attribute: Attribute,
+    /// Why.
+    pub reason: LossReason,
+    /// Whose, in the input's numbering.
+    pub element: Element,
 }
 
 /// One change, with its element in the input's numbering and its place.
@@ -162,7 +205,8 @@ pub struct StepSummary {
     pub tolerance: Option<f64>,
 }
 
-/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell.
+/// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell. What happened to
+/// attributes stands apart.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
@@ -172,6 +216,9 @@ pub struct Report {
     pub records: Vec<Record>,
     /// Data of the input that the result does not have.
     pub not_carried: Vec<Attribute>,
+    /// Single values that the result does not have, by attribute, reason and element.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub lost_values: Vec<LostValue>,
 }
 
 impl Report {
@@ -356,6 +403,22 @@ impl Relation {
             forward: Lists::group(old_count, pairs.iter().copied()),
             backward: Lists::group(new_count, pairs.iter().map(|&(old, new)| (new, old))),
         }
+    }
+
+    /// Every new element is a part of one old one, below `old_count`. O(elements).
+    pub(crate) fn from_parents(old_count: usize, parents: Vec<u32>) -> Self {
+        let forward = Lists::group(old_count, parents.iter().copied().zip(0..));
+        Self { forward, backward: Lists { starts: Vec::new(), items: parents } }
+    }
+
+    /// For each new element, in order, its old ones: ascending, without repeats, below `old_count`. O(pairs).
+    pub(crate) fn from_old_of(old_count: usize, starts: Vec<u32>, items: Vec<u32>) -> Self {
+        let count = starts.len().saturating_sub(1);
+        let single = items.len() == count && starts.iter().zip(0u32..).all(|(&s, i)| s == i);
+        let backward = Lists { starts: if single { Vec::new() } else { starts }, items };
+        let pairs = backward.pairs().map(|(new, old)| (old, new));
+        let forward = Lists::group(old_count, pairs);
+        Self { forward, backward }
     }
 
     /// The number of old elements.

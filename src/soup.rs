@@ -98,6 +98,18 @@ impl Polygons {
         Some(self.starts[..].get(i).copied()?..*self.starts.get(i.checked_add(1)?)?)
     }
 
+    /// Faces that all have `degree` corners, which stand one after the other.
+    pub(crate) fn uniform(degree: usize, corners: Vec<u32>) -> Self {
+        let starts = (0..=corners.len() / degree.max(1)).map(|i| degree * i).collect();
+        Self { starts, corners }
+    }
+
+    /// Faces by where their corners begin; `starts` begins with 0 and ends with the number of corners.
+    pub(crate) fn with_starts(starts: Vec<usize>, corners: Vec<u32>) -> Self {
+        debug_assert!(starts.first() == Some(&0) && starts.last() == Some(&corners.len()));
+        Self { starts, corners }
+    }
+
     pub(crate) fn starts(&self) -> &[usize] {
         &self.starts
     }
@@ -204,6 +216,9 @@ pub struct PolygonSoup {
     pub corner_uvs: Option<CornerData<[f64; 2]>>,
     /// Named runs of faces, in file order.
     pub groups: Vec<Group>,
+    /// The names of files that describe the materials (`mtllib`), as the file states them; not opened.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub material_files: Vec<String>,
 }
 
 impl PolygonSoup {

@@ -6,8 +6,7 @@
 //! the fan of faces in one sweep, from one boundary edge to the other. Around a face it is **counter-clockwise**,
 //! beginning at the face's first corner.
 //!
-//! A walk borrows the mesh, so nothing can be edited under it. To edit while walking, collect the keys first
-//! (`let around: Vec<_> = mesh.outgoing(v).collect()`), edit, and ask `contains_halfedge` before using the next key.
+//! What the caller is told of this, and how to edit while walking, is on the [walking page](crate::walking).
 
 use crate::matching::NONE;
 use crate::mesh::read;

@@ -1,4 +1,4 @@
-// CGAL's Surface_mesh on one shape: build, one-ring sweep, check, boundary, memory. The build is the faster of adding faces
+// CGAL's Surface_mesh on one shape: build, one-ring sweep, check, boundary, memory, Euler operations. The build is the faster of adding faces
 // one by one and of Polygon Mesh Processing's conversion of a soup; both are printed.
 
 #include "shape.hpp"
@@ -6,6 +6,7 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/Euler_operations.h>
 #include <CGAL/boost/graph/helpers.h>
 
 typedef CGAL::Simple_cartesian<double> Kernel;
@@ -89,4 +90,41 @@ int main(int argc, char** argv) {
   });
   print(name, "boundary", count, double(mesh.number_of_edges()), "ns/edge");
   print(name, "boundary_edges", double(boundary), "edges");
+
+  typedef Mesh::Halfedge_index H;
+  time_edits<Mesh>(name, "", shape, repeats, [&] { return build(shape); },
+    [](const Mesh& m, std::uint32_t a, std::uint32_t b) {
+      return m.halfedge(Mesh::Vertex_index(a), Mesh::Vertex_index(b));
+    },
+    [](Mesh& m, H h, Edit edit) {
+      const auto e = m.edge(h);
+      if (m.is_removed(e)) {
+        return false;
+      }
+      const auto opposite_vertex = [&m](H side) { return m.target(m.next(side)); };
+      switch (edit) {
+        case Edit::flip: {
+          if (m.is_border(e)) return false;
+          const auto c = opposite_vertex(h), d = opposite_vertex(m.opposite(h));
+          if (c == d || m.halfedge(c, d) != Mesh::null_halfedge()) return false;
+          CGAL::Euler::flip_edge(h, m);
+          return true;
+        }
+        case Edit::split: {
+          const Point middle = CGAL::midpoint(m.point(m.source(h)), m.point(m.target(h)));
+          const H half = CGAL::Euler::split_edge(h, m);
+          m.point(m.target(half)) = middle;
+          const H other = m.opposite(h);
+          if (!m.is_border(half)) CGAL::Euler::split_face(half, m.next(h), m);
+          if (!m.is_border(other)) CGAL::Euler::split_face(other, m.next(m.next(other)), m);
+          return true;
+        }
+        case Edit::collapse:
+          if (!CGAL::Euler::does_satisfy_link_condition(e, m)) return false;
+          // Which end stays is its own choice, so the counts of what was done differ a little from the others.
+          CGAL::Euler::collapse_edge(e, m);
+          return true;
+      }
+      return false;
+    });
 }

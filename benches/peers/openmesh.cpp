@@ -1,4 +1,4 @@
-// OpenMesh on one shape: build, one-ring sweep, check, boundary, memory; in double, and in its default single
+// OpenMesh on one shape: build, one-ring sweep, check, boundary, memory, flips, splits and collapses; in double, and in its default single
 // precision under names that end in _f32.
 //
 // Faces are added by OpenMesh's compiled core, and Debian's has assertions in it, which make that more than twice as slow.
@@ -84,6 +84,37 @@ void time_all(const std::string& suffix, const Shape& shape, int repeats) {
   });
   print(name, "boundary" + suffix, count, mesh.n_edges(), "ns/edge");
   print(name, "boundary_edges" + suffix, double(boundary), "edges");
+
+  time_edits<Mesh>(name, suffix, shape, repeats, [&shape] {
+    Mesh fresh = build<Mesh>(shape);
+    fresh.request_vertex_status();
+    fresh.request_edge_status();
+    fresh.request_halfedge_status();
+    fresh.request_face_status();
+    return fresh;
+  }, [](const Mesh& m, std::uint32_t a, std::uint32_t b) {
+    return m.find_halfedge(m.vertex_handle(a), m.vertex_handle(b));
+  }, [](Mesh& m, OpenMesh::HalfedgeHandle h, Edit edit) {
+    const auto e = m.edge_handle(h);
+    if (m.status(e).deleted()) {
+      return false;
+    }
+    bool ok = true;
+    switch (edit) {
+      case Edit::flip:
+        ok = m.is_flip_ok(e);
+        if (ok) m.flip(e);
+        break;
+      case Edit::split:
+        m.split(e, (m.point(m.from_vertex_handle(h)) + m.point(m.to_vertex_handle(h))) * 0.5f);
+        break;
+      case Edit::collapse:
+        ok = m.is_collapse_ok(h);
+        if (ok) m.collapse(h);
+        break;
+    }
+    return ok;
+  });
 }
 
 int main(int argc, char** argv) {

@@ -49,11 +49,13 @@ g++ -std=c++17 -O3 -DNDEBUG -o "$out/openmesh" benches/peers/openmesh.cpp "${ope
 g++ -std=c++17 -O3 -DNDEBUG -o "$out/cgal" benches/peers/cgal.cpp
 
 # Our bench is built once and its program run, so that an edit of the sources during the rounds changes nothing.
-cargo bench --quiet --no-run --bench peers
-ours=$(cargo bench --quiet --no-run --bench peers --message-format=json |
-  sed -n 's/.*"name":"peers".*"executable":"\([^"]*\)".*/\1/p')
-cp "$ours" "$out/meshwright"
-"$out/meshwright" --write "$out"
+cargo bench --quiet --no-run --bench peers --bench operators
+for bench in peers operators; do
+  ours=$(cargo bench --quiet --no-run --bench "$bench" --message-format=json |
+    sed -n 's/.*"name":"'"$bench"'".*"executable":"\([^"]*\)".*/\1/p')
+  cp "$ours" "$out/meshwright_$bench"
+done
+"$out/meshwright_peers" --write "$out"
 
 load() { cut -d' ' -f1-3 /proc/loadavg; }
 echo "$(nproc) cores, load $(load); least of $rounds rounds of $repeats repeats"
@@ -62,7 +64,8 @@ for shape in sphere1m scattered1m grid2m; do
   lines=$out/$shape.tsv
   : > "$lines"
   for ((round = 0; round < rounds; round++)); do
-    "$out/meshwright" --time "$out/$shape.raw" --repeats "$repeats" >> "$lines"
+    "$out/meshwright_peers" --time "$out/$shape.raw" --repeats "$repeats" >> "$lines"
+    "$out/meshwright_operators" --time "$out/$shape.raw" --repeats "$repeats" >> "$lines"
     "$out/openmesh" "$out/$shape.raw" "$repeats" >> "$lines"
     "$out/cgal" "$out/$shape.raw" "$repeats" >> "$lines"
   done
@@ -98,7 +101,8 @@ for shape in sphere1m scattered1m grid2m; do
           if (names[j] !~ /_f32$/ && (double == "" || value < double)) double = value
         }
         ours = (op, names[1]) in least ? least[op, names[1]] : ""
-        if (op ~ /checksum$|_edges$/) printf "  %-10s %9s\n", unit[op], op in wrong ? "DIFFERENT" : "agree"
+        if (op ~ /_done$/) printf "  %-10s\n", unit[op]
+        else if (op ~ /checksum$|_edges$/) printf "  %-10s %9s\n", unit[op], op in wrong ? "DIFFERENT" : "agree"
         else printf "  %-10s %9s %9s\n", unit[op], ratio(ours, double), ratio(ours, all)
       }
       for (op in wrong) exit 1

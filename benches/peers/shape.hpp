@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 struct Shape {
@@ -119,5 +120,47 @@ void print_memory(const char* name, const std::string& suffix, double faces, Bui
   int verdict = 0;
   if (waitpid(child, &verdict, 0) != child || verdict != 0) {
     fail("the build failed in the child process");
+  }
+}
+
+enum class Edit { flip, split, collapse };
+
+// The edges that are edited: 100,000 half-edges of triangles far apart, the same in every program.
+inline std::vector<std::pair<std::uint32_t, std::uint32_t>> picks(const Shape& shape) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> picked;
+  for (std::uint64_t n = 0; n < 100000; ++n) {
+    const auto& t = shape.triangles[n * 7919 % shape.triangles.size()];
+    picked.emplace_back(t[n % 3], t[(n + 1) % 3]);
+  }
+  return picked;
+}
+
+// Times checked edits on a fresh mesh each: a flip, a split with the faces beside it, a collapse into an end.
+template <class Mesh, class Build, class Find, class Do>
+void time_edits(const char* name, const std::string& suffix, const Shape& shape, int repeats, Build build, Find find,
+                Do edit) {
+  const auto picked = picks(shape);
+  const std::pair<Edit, std::string> edits[] = {
+      {Edit::flip, "flip"}, {Edit::split, "split"}, {Edit::collapse, "collapse"}};
+  for (const auto& [which, what] : edits) {
+    std::vector<double> times;
+    std::size_t done = 0;
+    for (int i = 0; i < std::max(repeats, 1); ++i) {
+      Mesh mesh = build();
+      std::vector<decltype(find(mesh, 0, 0))> halfedges;
+      for (const auto& p : picked) {
+        halfedges.push_back(find(mesh, p.first, p.second));
+      }
+      done = 0;
+      const double start = now();
+      for (const auto h : halfedges) {
+        done += edit(mesh, h, which);
+      }
+      times.push_back(now() - start);
+    }
+    std::sort(times.begin(), times.end());
+    const Times all{times.front(), (times[(times.size() - 1) / 2] + times[times.size() / 2]) / 2};
+    print(name, what + suffix, all, double(picked.size()), "ns/edge");
+    print(name, what + "_done" + suffix, double(done), "edits");
   }
 }

@@ -40,8 +40,24 @@ pub(crate) enum Command {
     IsClosed(Inspect),
     /// List the edges with only one face, as loops and chains
     NakedEdges(Inspect),
+    /// Merge vertices closer than a tolerance
+    Weld(WeldCommand),
+    /// Part the surface along sharp edges
+    Unweld(Unweld),
+    /// Even out a surface
+    Smooth(Smooth),
+    /// Cut faces into smaller ones
+    Subdivide(Subdivide),
+    /// Scale, rotate and translate, in this order
+    Transform(Transform),
+    /// Move vertices by a function of their position
+    Deform(Deform),
     /// Measure the enclosed volume, the area and the centroid
     Volume(Volume),
+    /// Cast a ray, and list where it meets the surface
+    Raycast(Raycast),
+    /// Find what is nearest to a point
+    Closest(Closest),
 }
 
 /// A file that is looked at as it is.
@@ -109,6 +125,136 @@ pub(crate) struct Unify {
     pub(crate) output: Output,
     #[command(flatten)]
     pub(crate) weld: ExactWeld,
+    /// Then turn each part outward: closed parts by how deep they lie in others, so that cavities stay cavities; open
+    /// parts if their direction is sure enough
+    #[arg(long)]
+    pub(crate) outward: bool,
+}
+
+/// Arguments of `weld`.
+#[derive(Debug, Args)]
+pub(crate) struct WeldCommand {
+    #[command(flatten)]
+    pub(crate) change: Convert,
+    /// Vertices closer than this become one, in the file's units; 0 merges equal coordinates
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub(crate) tolerance: f64,
+}
+
+/// Arguments of `unweld`.
+#[derive(Debug, Args)]
+pub(crate) struct Unweld {
+    #[command(flatten)]
+    pub(crate) change: Convert,
+    /// Edges at which the surface turns by more than this are parted
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    pub(crate) angle: f64,
+}
+
+/// Arguments of `smooth`.
+#[derive(Debug, Args)]
+pub(crate) struct Smooth {
+    #[command(flatten)]
+    pub(crate) change: Convert,
+    /// How often
+    #[arg(long, value_name = "N")]
+    pub(crate) iterations: u32,
+    /// How far a step goes, above 0 and at most 1
+    #[arg(long, value_name = "L", allow_hyphen_values = true)]
+    pub(crate) lambda: f64,
+    /// The second step of `taubin`, below -L [default: for a pass band of 0.1]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) mu: Option<f64>,
+    /// What pulls a vertex [default: laplacian, or taubin if there is a mu]
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<SmoothMethod>,
+    /// What boundary vertices do
+    #[arg(long, value_enum, default_value = "fixed")]
+    pub(crate) boundary: Boundary,
+}
+
+/// What pulls a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SmoothMethod {
+    /// The mean of its neighbours; shrinks
+    Laplacian,
+    /// The same, and back by mu: does not shrink
+    Taubin,
+    /// The mean of its neighbours, weighted by cotangents
+    Cotan,
+}
+
+/// What boundary vertices do.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Boundary {
+    /// They stay
+    Fixed,
+    /// They move along the boundary
+    Slide,
+    /// They move as all others
+    Free,
+}
+
+/// Arguments of `subdivide`.
+#[derive(Debug, Args)]
+pub(crate) struct Subdivide {
+    #[command(flatten)]
+    pub(crate) change: Convert,
+    /// How faces are cut and vertices placed
+    #[arg(long, value_enum)]
+    pub(crate) scheme: Scheme,
+    /// How often
+    #[arg(long, value_name = "N")]
+    pub(crate) levels: u32,
+}
+
+/// How faces are cut and vertices placed.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Scheme {
+    /// No vertex moves
+    Midpoint,
+    /// Smooth, for triangles
+    Loop,
+    /// Smooth, for any faces
+    CatmullClark,
+    /// Smooth, three triangles for one
+    Sqrt3,
+}
+
+/// Arguments of `transform`.
+#[derive(Debug, Args)]
+pub(crate) struct Transform {
+    #[command(flatten)]
+    pub(crate) change: Convert,
+    /// Scale by one factor or by one for each axis; a negative product mirrors and reverses the winding
+    #[arg(long, value_name = "s|x,y,z", allow_hyphen_values = true, value_parser = factors)]
+    pub(crate) scale: Option<[f64; 3]>,
+    /// Rotate about an axis by an angle in degrees
+    #[arg(long, value_name = "ax,ay,az,degrees", allow_hyphen_values = true, value_parser = numbers::<4>)]
+    pub(crate) rotate: Option<[f64; 4]>,
+    /// Add a vector
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    pub(crate) translate: Option<[f64; 3]>,
+    /// What stays in place under --scale and --rotate: a point, or the middle of the bounding box
+    #[arg(long, value_name = "x,y,z|center", default_value = "0,0,0", allow_hyphen_values = true, value_parser = origin)]
+    pub(crate) origin: Origin,
+}
+
+/// What stays in place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Origin {
+    Point([f64; 3]),
+    Center,
+}
+
+/// Arguments of `deform`.
+#[derive(Debug, Args)]
+pub(crate) struct Deform {
+    #[command(flatten)]
+    pub(crate) change: Convert,
+    /// Add sin(5 x) cos(5 y) times this to z
+    #[arg(long, value_name = "AMPLITUDE", allow_hyphen_values = true)]
+    pub(crate) wave: f64,
 }
 
 /// Arguments of `volume`.
@@ -118,6 +264,73 @@ pub(crate) struct Volume {
     pub(crate) file: PathBuf,
     #[command(flatten)]
     pub(crate) strict: Strict,
+}
+
+/// Arguments of `raycast`.
+#[derive(Debug, Args)]
+pub(crate) struct Raycast {
+    /// The file
+    pub(crate) file: PathBuf,
+    /// Where the ray begins
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, required_unless_present = "queries", requires = "direction")]
+    pub(crate) origin: Option<Triple>,
+    /// Where it goes; its length is the unit of t
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, required_unless_present = "queries", requires = "origin")]
+    pub(crate) direction: Option<Triple>,
+    /// Only the first hit
+    #[arg(long)]
+    pub(crate) first: bool,
+    /// Many rays: a file of lines of six numbers, origin and direction, separated by commas
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["origin", "direction"])]
+    pub(crate) queries: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) strict: Strict,
+}
+
+/// Arguments of `closest`.
+#[derive(Debug, Args)]
+pub(crate) struct Closest {
+    /// The file
+    pub(crate) file: PathBuf,
+    /// The point
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, required_unless_present = "queries")]
+    pub(crate) point: Option<Triple>,
+    /// What to look for
+    #[arg(long, value_enum)]
+    pub(crate) to: Target,
+    /// Nothing farther than this; if nothing is left the answer is "no"
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) max_distance: Option<f64>,
+    /// Many points: a file of lines of three numbers separated by commas
+    #[arg(long, value_name = "FILE", conflicts_with = "point")]
+    pub(crate) queries: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) strict: Strict,
+}
+
+/// What can be nearest.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Target {
+    /// A vertex, whether a face names it or not
+    Vertex,
+    /// A point on an edge
+    Edge,
+    /// A face by its nearest point
+    Face,
+    /// A face by the mean of its corners
+    FaceCenter,
+    /// A point of the surface
+    Surface,
+}
+
+/// Three numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triple(pub(crate) [f64; 3]);
+
+fn triple(word: &str) -> Result<Triple, String> {
+    let numbers: Result<Vec<f64>, _> = word.split(',').map(|n| n.trim().parse()).collect();
+    let triple = numbers.ok().and_then(|n| n.try_into().ok());
+    triple.map(Triple).ok_or_else(|| "three numbers separated by commas".to_owned())
 }
 
 /// What is done about a file that is no manifold.
@@ -160,5 +373,26 @@ fn weld_or_auto(word: &str) -> Result<Weld, String> {
         Ok(Weld::Auto)
     } else {
         weld(word).map_err(|_| "none, exact, auto or a number".to_owned())
+    }
+}
+
+/// Numbers separated by commas.
+fn numbers<const N: usize>(word: &str) -> Result<[f64; N], String> {
+    let all: Result<Vec<f64>, _> = word.split(',').map(|x| x.trim().parse()).collect();
+    all.ok().and_then(|all| all.try_into().ok()).ok_or_else(|| format!("{N} numbers separated by commas"))
+}
+
+fn factors(word: &str) -> Result<[f64; 3], String> {
+    match word.trim().parse() {
+        Ok(factor) => Ok([factor; 3]),
+        Err(_) => numbers(word).map_err(|_| "one number or three separated by commas".to_owned()),
+    }
+}
+
+fn origin(word: &str) -> Result<Origin, String> {
+    if word == "center" {
+        Ok(Origin::Center)
+    } else {
+        numbers(word).map(Origin::Point).map_err(|_| "center or three numbers separated by commas".to_owned())
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::progress;
 use crate::session::{Failure, Phase, Session};
-use meshwright::cleanup::{CleanOptions, Weld, clean, index};
+use meshwright::cleanup::{CleanError, CleanOptions, Weld, clean, clean_indexed, index};
 use meshwright::io::{Limits, Loaded, read_file};
-use meshwright::{Control, IndexedMesh, Mesh, Outcome, Report, Step};
+use meshwright::{Control, IndexedMesh, LostValue, Maps, Mesh, Outcome, PolygonSoup, Report, Step};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -21,10 +21,38 @@ pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure
 /// Reads a file and makes a mesh of it, by the `preserve` clean-up or, if `strict`, only if it is one. Returns the mesh
 /// and what is to be told about the import.
 pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(Mesh, Value), Failure> {
+    mesh_with_maps(session, path, strict).map(|(mesh, _, import)| (mesh, import))
+}
+
+/// The same with the relations between the file's elements and the mesh's.
+pub(crate) fn mesh_with_maps(
+    session: &mut Session,
+    path: &Path,
+    strict: bool,
+) -> Result<(Mesh, Maps, Value), Failure> {
+    import(session, path, strict, clean, |(_, mesh)| mesh)
+}
+
+/// As [`mesh`], but gives the vertex pool of the mesh, with all attributes.
+pub(crate) fn pool(
+    session: &mut Session,
+    path: &Path,
+    strict: bool,
+) -> Result<(IndexedMesh, Value), Failure> {
+    import(session, path, strict, clean_indexed, |(pool, _)| pool).map(|(pool, _, import)| (pool, import))
+}
+
+fn import<T>(
+    session: &mut Session,
+    path: &Path,
+    strict: bool,
+    clean: impl FnOnce(&PolygonSoup, CleanOptions<'_>) -> Result<Outcome<T>, CleanError>,
+    choose: impl FnOnce((IndexedMesh, Mesh)) -> T,
+) -> Result<(T, Maps, Value), Failure> {
     let loaded = load(session, path)?;
     if strict {
-        return strict_mesh(session, &loaded)
-            .map(|mesh| (mesh, json!({ "notes": loaded.notes, "counts": {} })));
+        let (pool, mesh, maps, report) = strict_mesh(session, &loaded)?;
+        return Ok((choose((pool, mesh)), maps, import_json(&loaded, &report)));
     }
     let outcome = session.timed(Phase::Build, || {
         progress::shown(|hook| {
@@ -32,7 +60,8 @@ pub(crate) fn mesh(session: &mut Session, path: &Path, strict: bool) -> Result<(
         })
     })?;
     say_changes(session, &outcome.report);
-    Ok((outcome.value, import_json(&loaded, &outcome.report)))
+    let import = import_json(&loaded, &outcome.report);
+    Ok((outcome.value, outcome.maps, import))
 }
 
 /// What the import changed, for `"import"`.
@@ -43,10 +72,11 @@ pub(crate) fn import_json(loaded: &Loaded, report: &Report) -> Value {
         "defects": report.records,
         "steps": report.steps,
         "not_carried": report.not_carried,
+        "lost_values": lost_values(report),
     })
 }
 
-fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> {
+fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<(IndexedMesh, Mesh, Maps, Report), Failure> {
     let indexed = session.timed(Phase::Build, || index(&loaded.soup, Weld::Exact))?;
     let refuse = |message: String, defects: Value| {
         let json = Map::from_iter([("defects".to_owned(), defects)]);
@@ -57,9 +87,11 @@ fn strict_mesh(session: &mut Session, loaded: &Loaded) -> Result<Mesh, Failure> 
         let message = format!("not a valid vertex pool: {} at {} and {more} more", first.kind, first.element);
         return refuse(message, json!(indexed.report.records));
     }
-    session
-        .timed(Phase::Build, || Mesh::build(&indexed.value))
-        .or_else(|error| refuse(error.to_string(), json!(error.defects)))
+    say_changes(session, &indexed.report);
+    match session.timed(Phase::Build, || Mesh::build(&indexed.value)) {
+        Ok(mesh) => Ok((indexed.value, mesh, indexed.maps, indexed.report)),
+        Err(error) => refuse(error.to_string(), json!(error.defects)),
+    }
 }
 
 /// Reads a file and welds it, whatever its state.
@@ -103,5 +135,25 @@ pub(crate) fn changes(report: &Report) -> Vec<String> {
         let names: Vec<String> = report.not_carried.iter().map(|a| a.as_str().replace('_', " ")).collect();
         lines.push(format!("not carried: {}", names.join(", ")));
     }
+    for lost in alike(report) {
+        let [attribute, reason] =
+            [lost[0].attribute.as_str(), lost[0].reason.as_str()].map(|n| n.replace('_', " "));
+        let (count, first) = (lost.len(), lost[0].element);
+        lines.push(format!("{count} values of {attribute} not carried ({reason}): {first} first"));
+    }
     lines
+}
+
+/// The values that were not carried, those of one attribute and reason together.
+fn alike(report: &Report) -> impl Iterator<Item = &[LostValue]> {
+    report.lost_values.chunk_by(|a, b| (a.attribute, a.reason) == (b.attribute, b.reason))
+}
+
+/// The values that were not carried, for `"lost_values"`: how many, and the first, as there may be one at each vertex.
+pub(crate) fn lost_values(report: &Report) -> Value {
+    let summary = |lost: &[LostValue]| {
+        let LostValue { attribute, reason, element } = lost[0];
+        json!({ "attribute": attribute, "reason": reason, "count": lost.len(), "first": element })
+    };
+    alike(report).map(summary).collect()
 }

@@ -255,6 +255,35 @@ fn flip_reverses_and_convert_keeps() {
 }
 
 #[test]
+fn textures_normals_and_groups_go_along_and_what_does_not_is_told() {
+    let dir = directory("attributes");
+    // Two triangles with vertices of their own, wound apart, with a seam between them, a group, and a normal that is none.
+    let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 0.1 0\nvt 0 0.1\nvt 0.5 0.5\n\
+        vt 0.6 0.5\nvt 0.6 0.7\nvn 0 0 1\nvn nan 0 1\ng left\nusemtl red\nf 1/1/1 2/2/1 3/3/1\ng right\nf 4/4/1 5/5/2 6/6/1\n";
+    fs::write(dir.join("a.obj"), text).expect("written");
+    let nothing = serde_json::json!([]);
+    let lost = serde_json::json!([{
+        "attribute": "corner_normals", "reason": "non_finite", "count": 1, "first": { "corner": [1, 1] }
+    }]);
+    let (code, answer) = json(&dir, &["clean", "a.obj", "-o", "b.obj"]);
+    assert_eq!((code, &answer["not_carried"], &answer["lost_values"]), (0, &nothing, &lost));
+    assert_eq!((&answer["lost"], &answer["counts"]["flipped_face"]), (&nothing, &1.into()));
+    let expected = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 0.1 0\nvt 0 0.1\nvt 0.5 0.5\nvt 0.6 0.7\n\
+        vt 0.6 0.5\nvn 0 0 1\ng left\nusemtl red\nf 1/1/1 2/2/1 3/3/1\ng right\nf 2/4/1 4/5/1 3/6\n";
+    let written = |name: &str| fs::read_to_string(dir.join(name)).expect("text");
+    assert_eq!(written("b.obj"), expected);
+    let (code, answer) = json(&dir, &["convert", "b.obj", "-o", "c.obj", "--strict"]);
+    assert_eq!((code, &answer["import"]["lost_values"], &answer["lost"]), (0, &nothing, &nothing));
+    assert_eq!(written("c.obj"), expected);
+    let (_, answer) = json(&dir, &["convert", "b.obj", "-o", "d.stl"]);
+    for kind in ["normals", "texture_coordinates", "groups", "material_files"] {
+        assert!(answer["lost"].as_array().expect("a list").contains(&kind.into()), "{answer}");
+    }
+    assert_eq!(json(&dir, &["flip", "b.obj", "-o", "e.obj"]).0, 0);
+    assert!(written("e.obj").contains("vn -0 -0 -1\n") && written("e.obj").contains("f 1/1/1 3/2/1 2/3/1\n"));
+}
+
+#[test]
 fn strict_refuses_what_the_import_would_change() {
     let dir = directory("strict");
     fs::write(dir.join("bad.obj"), cubes(&[[0, 0, 0], [1, 1, 0]])).expect("written");

@@ -2,6 +2,7 @@
 
 use super::pool::Pool;
 use super::{CleanError, Weld};
+use crate::attributes::Attributes;
 use crate::geometry::measure::{Aabb, measures};
 use crate::parallel::both;
 use crate::report::Kind;
@@ -103,7 +104,7 @@ pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
     }
     facts.isolated_vertices = named.iter().filter(|n| !**n).count();
 
-    let indexed = pool.lend(None);
+    let indexed = pool.lend(Attributes::NONE);
     let topology = indexed.topology();
     let ((components, pieces), pinched) =
         both(|| (topology.components().1, topology.boundary_pieces()), || topology.pinched_vertices().len());

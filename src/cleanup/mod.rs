@@ -4,6 +4,7 @@
 //! tells what state a soup is in without changing it. Everything is decided on the indexed form, before half-edges
 //! exist.
 
+mod carry;
 mod facts;
 mod pair;
 mod polygons;
@@ -16,9 +17,10 @@ pub use weld::propose_tolerance;
 
 use crate::build::assemble;
 use crate::matching::{Chains, Matching, NONE};
-use crate::report::{Element, Kind, Maps, Outcome, Record, Step, StepSummary};
+use crate::report::{Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
 use crate::topology::{FaceOf, duplicate_faces, flip_faces, next_corner, orient};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
+use carry::Carried;
 use glam::DVec3;
 use pool::Pool;
 
@@ -86,9 +88,13 @@ pub enum CleanError {
 /// open; vertices split so that each has one fan. A soup without defects comes out as it is, with an empty record.
 ///
 /// Vertices keep the soup's order (the lowest of those merged counts), and so do faces; what a split adds comes last.
-/// Given vertex normals are carried unless vertices with different ones were merged; what else the soup holds beside
-/// positions and faces is not, and [`Report::not_carried`](crate::Report::not_carried) says so. Splits leave coincident vertices: clean the
-/// result with [`Weld::None`], and nothing changes.
+/// Splits leave coincident vertices: clean the result with [`Weld::None`], and nothing changes.
+///
+/// Attributes go along. Corner data stays with its corner, whatever becomes of the vertex: a seam does not keep vertices
+/// apart. Where vertices with different normals become one, vertex normals become normals of corners; of different
+/// colours the lowest vertex's stays. The corner normals of a flipped face turn with it, unless they lie on the side where
+/// it then faces. What lies in the middle of a parted edge is the mean of its ends. Values that are not finite are left
+/// out. [`Report::not_carried`] names the attributes that the result does not have, [`Report::lost_values`] the single values.
 ///
 /// O(n log n) in the corners at worst, linear without defects.
 ///
@@ -108,6 +114,54 @@ pub enum CleanError {
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
+    let cleaned = run(soup, options, |mesh| mesh)?;
+    let (value, maps) = (cleaned.kept, cleaned.maps);
+    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried), maps })
+}
+
+/// As [`clean`], but gives the vertex pool that the mesh is built of, with all its attributes: for whoever writes the
+/// result to a file. [`Mesh::build`] of it succeeds.
+///
+/// # Errors
+/// As [`clean`].
+///
+/// # Examples
+/// ```
+/// use meshwright::{CornerData, PolygonSoup, Polygons, cleanup::{CleanOptions, clean_indexed}, glam::{DVec3, dvec2}};
+/// // Two triangles, unwelded, each with its own piece of the texture.
+/// let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X, DVec3::ONE, DVec3::Y];
+/// let mut soup = PolygonSoup::new(points, Polygons::from_triangles(&[[0, 1, 2], [3, 4, 5]]));
+/// let values = (0..6).map(|i| [f64::from(i), 0.0]).collect();
+/// soup.corner_uvs = Some(CornerData { values, indices: vec![0, 1, 2, 3, 4, 5] });
+/// let cleaned = clean_indexed(&soup, CleanOptions::default())?;
+/// assert_eq!(cleaned.value.polygons().corners(), [0, 1, 2, 1, 3, 2]);
+/// let uvs = cleaned.value.attributes().corner_uvs.as_ref().expect("carried");
+/// assert_eq!((uvs[1], uvs[3]), (Some(dvec2(1.0, 0.0)), Some(dvec2(3.0, 0.0))));
+/// # Ok::<(), meshwright::cleanup::CleanError>(())
+/// ```
+pub fn clean_indexed(
+    soup: &PolygonSoup,
+    options: CleanOptions<'_>,
+) -> Result<Outcome<IndexedMesh>, CleanError> {
+    let cleaned = run(soup, options, drop)?;
+    let (value, maps) = (cleaned.indexed, cleaned.maps);
+    Ok(Outcome { value, report: tell(cleaned.report, &cleaned.carried), maps })
+}
+
+/// What a clean-up arrives at: a pool, and what is kept of the mesh that was built of it.
+struct Cleaned<M> {
+    indexed: IndexedMesh,
+    kept: M,
+    carried: Carried,
+    report: Report,
+    maps: Maps,
+}
+
+fn run<M>(
+    soup: &PolygonSoup,
+    options: CleanOptions<'_>,
+    keep: impl FnOnce(Mesh) -> M,
+) -> Result<Cleaned<M>, CleanError> {
     let Profile::Preserve = options.profile;
     let mut control = options.control;
     let mut pool = Pool::new(soup, options.weld, &mut control)?;
@@ -116,14 +170,14 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
     if chains.is_paired() {
         // Most files need no more: try before working out what is wrong.
         control.report("build", 0.5)?;
-        let normals = pool.welded_normals();
-        let indexed = pool.lend(normals);
-        let built = assemble(&indexed, &chains.into_pairing());
-        pool.take_back(indexed);
-        if let Some(value) = built {
-            let (report, maps) = pool.account();
-            return Ok(Outcome { value, report, maps });
+        let mut carried = pool.carry_welded();
+        let indexed = pool.lend(std::mem::take(&mut carried.attributes));
+        if let Some(mesh) = assemble(&indexed, &chains.into_pairing()) {
+            let kept = keep(mesh);
+            let (report, maps) = pool.account(indexed.positions());
+            return Ok(Cleaned { indexed, kept, carried, report, maps });
         }
+        pool.take_back(indexed);
     }
     control.report("drop duplicates", 0.5)?;
     let mut matching = Matching::new(pool.positions.len(), &pool.polygons);
@@ -141,13 +195,19 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
     pool.report.records.sort_by_key(|r| r.step);
     control.report("build", 0.9)?;
     pool.positions = positions;
-    let normals = pool.normals(|v| maps.vertices.new_of(v));
-    let value = Mesh::build(&pool.lend(normals)).map_err(CleanError::Bug)?;
-    Ok(Outcome { value, report: pool.report, maps })
+    let mut carried = carry::carry(&pool, |v| maps.vertices.new_of(v));
+    let indexed = pool.lend(std::mem::take(&mut carried.attributes));
+    let kept = keep(Mesh::build(&indexed).map_err(CleanError::Bug)?);
+    Ok(Cleaned { indexed, kept, carried, report: pool.report, maps })
+}
+
+/// The report with what the result does not have of the soup's attributes.
+fn tell(report: Report, carried: &Carried) -> Report {
+    Report { not_carried: carried.not_carried(), lost_values: carried.lost_values(), ..report }
 }
 
 /// Makes a valid vertex pool of any soup: drops what is not finite, out of range or short, welds, and repairs faces
-/// that name a vertex twice. How faces meet is left as it is. Linear in the corners.
+/// that name a vertex twice. How faces meet is left as it is. Attributes go along as in [`clean`]. Linear in the corners.
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
@@ -163,11 +223,10 @@ pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Me
 /// ```
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
     let mut pool = Pool::new(soup, weld, &mut Control::none())?;
-    let normals = pool.welded_normals();
-    let value = pool.lend(normals);
-    pool.positions = value.positions().to_vec();
-    let (report, maps) = pool.account();
-    Ok(Outcome { value, report, maps })
+    let mut carried = pool.carry_welded();
+    let value = pool.lend(std::mem::take(&mut carried.attributes));
+    let (report, maps) = pool.account(value.positions());
+    Ok(Outcome { value, report: tell(report, &carried), maps })
 }
 
 /// Drops faces that are there already. Whether there were any.
@@ -235,6 +294,9 @@ fn make_manifold(pool: &mut Pool<'_>, matching: &Matching) -> Vec<u32> {
         }
         cut.extend(unify(pool, &mut mates));
     }
+    if flipped.contains(&true) {
+        pool.flipped.clone_from(&flipped);
+    }
     for face in (0..flipped.len()).filter(|&f| flipped[f]) {
         record_face(pool, face as u32, Step::Unify, Kind::FlippedFace);
     }
@@ -276,7 +338,7 @@ fn is_undone_weld(pool: &Pool<'_>, matching: &Matching, mates: &[u32], edge: usi
         let face = pool.polygons.starts().partition_point(|&s| s <= c) - 1;
         let pair = (c as u32).min(mates[c]);
         for c in [c, next_corner(&pool.polygons, face as u32, c)] {
-            named.push((pool.corner_source[c], pair));
+            named.push((pool.named_at(c), pair));
         }
     }
     named.sort_unstable();

@@ -1,10 +1,12 @@
 //! The first half of clean-up: from a soup to a valid vertex pool that remembers where everything came from.
 
+use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
 use super::weld::{propose_tolerance, weld};
 use super::{CleanError, Weld};
+use crate::attributes::Attributes;
 use crate::matching::NONE;
-use crate::report::{Attribute, Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
+use crate::report::{Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
 use crate::{Cancelled, Control, IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
 use glam::DVec3;
 
@@ -15,12 +17,18 @@ pub(super) struct Pool<'s> {
     pub(super) polygons: Polygons,
     /// For each face the soup's face it was made of.
     pub(super) face_source: Vec<u32>,
-    /// For each corner the soup's vertex it named.
+    /// For each corner the soup's corner it was.
     pub(super) corner_source: Vec<u32>,
     /// For each vertex the lowest of the soup's vertices in it: ascending.
     pub(super) vertex_source: Vec<u32>,
     /// For each of the soup's vertices the vertex it is in, or [`NONE`] if it was dropped.
     pub(super) vertex_of: Vec<u32>,
+    /// Whether each face was reversed; empty if none was.
+    pub(super) flipped: Vec<bool>,
+    /// The last vertices are in the middle between these: edges that were parted.
+    pub(super) parted: Vec<[u32; 2]>,
+    /// The corners at those vertices, ascending.
+    pub(super) middles: Vec<u32>,
     pub(super) report: Report,
     /// The tolerance of the weld; `None` if there was none.
     pub(super) tolerance: Option<f64>,
@@ -68,6 +76,9 @@ impl<'s> Pool<'s> {
             corner_source: Vec::with_capacity(soup.polygons.corners().len()),
             vertex_source: Vec::new(),
             vertex_of: merged_into,
+            flipped: Vec::new(),
+            parted: Vec::new(),
+            middles: Vec::new(),
             report: Report::default(),
             tolerance,
             degenerate_faces: 0,
@@ -122,6 +133,7 @@ impl<'s> Pool<'s> {
         let (mut welded, mut pieces) = (Vec::new(), Polygons::new());
         let mut dropped = dropped_vertices;
         for (f, face) in soup.polygons.iter().enumerate() {
+            let first = soup.polygons.starts()[f] as u32;
             if f.is_multiple_of(1 << 19) {
                 control.report("repair faces", 0.3 + 0.1 * f as f64 / soup.polygons.len() as f64)?;
             }
@@ -146,7 +158,7 @@ impl<'s> Pool<'s> {
             }
             for piece in pieces.iter() {
                 self.polygons.push(piece.iter().map(|&i| welded[i as usize]));
-                self.corner_source.extend(piece.iter().map(|&i| face[i as usize]));
+                self.corner_source.extend(piece.iter().map(|&i| first + i));
                 self.face_source.push(f as u32);
             }
         }
@@ -169,6 +181,11 @@ impl<'s> Pool<'s> {
     /// The soup's vertex for a vertex of the pool, as records name it.
     pub(super) fn named(&self, v: u32) -> u32 {
         self.vertex_source[v as usize]
+    }
+
+    /// The soup's vertex that a corner of the pool named there.
+    pub(super) fn named_at(&self, corner: usize) -> u32 {
+        self.soup.polygons.corners()[self.corner_source[corner] as usize]
     }
 
     /// Removes faces.
@@ -212,43 +229,18 @@ impl<'s> Pool<'s> {
         self.report.records.splice(before..before, merges.collect::<Vec<_>>());
     }
 
-    /// Given normals, if the soup has one for each vertex, finite where it is kept, and no two that became one differ.
-    /// `new_of` gives what became of the soup's vertices.
-    pub(super) fn normals<'n>(&self, new_of: impl Fn(usize) -> &'n [u32]) -> Option<Vec<DVec3>> {
-        let given = &self.soup.vertex_normals;
-        if given.is_empty() || given.len() != self.soup.positions.len() {
-            return None;
-        }
-        let kept: Vec<DVec3> = self.vertex_source.iter().map(|&v| given[v as usize]).collect();
-        let agree = |(v, n): (usize, &DVec3)| new_of(v).iter().all(|&new| kept[new as usize] == *n);
-        (kept.iter().all(|n| n.is_finite()) && given.iter().enumerate().all(agree)).then_some(kept)
-    }
-
-    /// Given normals of the vertices as they were welded.
-    pub(super) fn welded_normals(&self) -> Option<Vec<DVec3>> {
-        self.normals(|v| match self.vertex_of[v] {
+    /// The soup's attributes on the vertices as they were welded.
+    pub(super) fn carry_welded(&self) -> Carried {
+        carry(self, |v| match self.vertex_of[v] {
             NONE => &[],
             _ => std::slice::from_ref(&self.vertex_of[v]),
         })
     }
 
-    /// The pool as it stands, its positions and faces moved out, with the normals it is to carry.
-    pub(super) fn lend(&mut self, normals: Option<Vec<DVec3>>) -> IndexedMesh {
-        self.report.not_carried = self.not_carried(normals.is_some());
+    /// The pool as it stands, its positions and faces moved out.
+    pub(super) fn lend(&mut self, attributes: Attributes) -> IndexedMesh {
         let (positions, polygons) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.polygons));
-        IndexedMesh::trusted(positions, polygons, normals)
-    }
-
-    fn not_carried(&self, normals: bool) -> Vec<Attribute> {
-        let soup = self.soup;
-        let present = [
-            (Attribute::VertexNormals, !soup.vertex_normals.is_empty() && !normals),
-            (Attribute::VertexColors, !soup.vertex_colors.is_empty()),
-            (Attribute::CornerNormals, soup.corner_normals.is_some()),
-            (Attribute::TextureCoordinates, soup.corner_uvs.is_some()),
-            (Attribute::Groups, !soup.groups.is_empty()),
-        ];
-        present.into_iter().filter(|p| p.1).map(|p| p.0).collect()
+        IndexedMesh::trusted(positions, polygons, None).carrying(attributes)
     }
 
     /// Takes positions and faces back.
@@ -256,8 +248,8 @@ impl<'s> Pool<'s> {
         (self.positions, self.polygons, _) = indexed.into_parts();
     }
 
-    /// The account of a pool whose vertices stand as they were welded.
-    pub(super) fn account(mut self) -> (Report, Maps) {
+    /// The account of a pool whose vertices stand as they were welded, at these positions.
+    pub(super) fn account(mut self, positions: &[DVec3]) -> (Report, Maps) {
         let maps = Maps {
             vertices: Relation::from_map(
                 &self.vertex_of.iter().map(|&v| Some(v).filter(|&v| v != NONE)).collect::<Vec<_>>(),
@@ -265,7 +257,7 @@ impl<'s> Pool<'s> {
             ),
             faces: self.face_relation(),
         };
-        let (positions, of) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.vertex_of));
+        let of = std::mem::take(&mut self.vertex_of);
         self.record_merges(|v| positions.get(of[v as usize] as usize).copied());
         (self.report, maps)
     }

@@ -41,7 +41,7 @@ impl Fans {
         // The first fan to name each of the soup's vertices.
         let mut owner = vec![NONE; pool.soup.positions.len()];
         for (c, &fan) in fans.of.iter().enumerate() {
-            let source = pool.corner_source[c];
+            let source = pool.named_at(c);
             fans.vertex[fan as usize] = pool.polygons.corners()[c];
             fans.source[fan as usize] = fans.source[fan as usize].min(source);
             match owner[source as usize] {
@@ -123,7 +123,8 @@ impl Fans {
         let soup_vertices = pool.soup.positions.len();
         let mut named = vec![false; soup_vertices];
         let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(self.of.len());
-        for (&source, &fan) in pool.corner_source.iter().zip(&self.of) {
+        for (c, &fan) in self.of.iter().enumerate() {
+            let source = pool.named_at(c);
             named[source as usize] = true;
             pairs.push((source, number_of_fan[fan as usize]));
         }
@@ -166,6 +167,7 @@ fn part_parallel_edges(pool: &mut Pool<'_>, mates: &[u32]) {
             let vertex = pool.positions.len() as u32;
             let middle = a * 0.5 + b * 0.5;
             pool.positions.push(middle);
+            pool.parted.push(ends);
             let [a, b] = ends.map(|v| pool.named(v));
             pool.vertex_source.push(a.min(b));
             let element = Element::Edge([a.min(b), a.max(b)]);
@@ -194,6 +196,7 @@ fn insert_corners(pool: &mut Pool<'_>, parted: &BTreeMap<usize, u32>) {
             sources.push(pool.corner_source[c]);
             if let Some(&middle) = parted.get(&c) {
                 corners.push(middle);
+                pool.middles.push(sources.len() as u32);
                 sources.push(pool.corner_source[c]);
             }
             c += 1;

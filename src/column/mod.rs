@@ -5,8 +5,13 @@
 //!
 //! **Corners** are the half-edges that have a face: the corner of `h` is that of `face(h)` at `origin(h)`. Two corners of
 //! one vertex may hold different values: where they do, the edge between them is a *seam*. Splitting, collapsing and
-//! poking keep seams where they are; [`flip_edge`](Mesh::flip_edge) and [`join_faces`](Mesh::join_faces) take an edge
-//! away, so ask [`is_seam`](Mesh::is_seam) first where seams matter.
+//! poking keep seams where they are; [`flip_edge`](Mesh::flip_edge), [`join_faces`](Mesh::join_faces) and
+//! [`dissolve_vertex`](Mesh::dissolve_vertex) take edges away, so ask [`is_seam`](Mesh::is_seam) first where seams matter.
+//!
+//! A seam *ends* inside the surface where both sides of its last edge hold the same value at one end, and differ at the
+//! other. Collapsing that edge makes both sides one at the vertex that is left, where the seam ends then; so a seam of
+//! which the edge's other end was the only vertex with two values is gone. Where a collapse takes the last triangle
+//! between two seams, they become one edge, which is a seam if the values beyond them differ.
 //!
 //! A mesh without columns pays one comparison for each element that an operator makes or merges.
 

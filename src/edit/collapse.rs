@@ -6,6 +6,7 @@ use crate::column::{Dense, Event, Kind};
 use crate::matching::NONE;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, Mesh, VertexKey};
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// Why an edge was not collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -61,7 +62,8 @@ impl Mesh {
     ///
     /// Euler characteristic, boundary loops and components stay what they are, and no other vertex loses its last face.
     /// Data of the two ends is merged by where between them the position lies; corners are merged within their seams, so
-    /// a seam along the edge or through one of its ends stays a seam. O(valences of the ends).
+    /// a seam along the edge or through one of its ends stays a seam. Where a seam ends inside the surface, collapsing its
+    /// last edge moves the end to the merged vertex. O(valences of the ends).
     ///
     /// The conditions extend the link condition (Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving edge
     /// contraction", 1999) to faces of any degree.
@@ -189,19 +191,31 @@ impl Mesh {
 
     /// No neighbour but the apexes is common to both ends, and no face but those beside the edge.
     fn check_shared(&self, a: u32, b: u32, apex: [u32; 2], beside: [u32; 2]) -> Result<(), CollapseError> {
-        let around = |v: u32| -> Slots {
-            let all = self.outgoing_slots(v).map(|h| self.origin[h as usize ^ 1]);
-            all.filter(|v| !apex.contains(v)).collect()
+        // The triangles that hold both ends are those beside the edge.
+        let large = |h: u32| {
+            let f = self.face[h as usize];
+            (f != NONE && !self.is_triangle(h) && !beside.contains(&f)).then_some(f)
         };
-        let faces = |v: u32| -> Slots {
-            // The triangles that hold both ends are those beside the edge.
-            let large = self.outgoing_slots(v).filter(|&h| !self.is_open(h) && !self.is_triangle(h));
-            large.map(|h| self.face[h as usize]).filter(|f| !beside.contains(f)).collect()
-        };
-        if let Some(v) = common(around(a), around(b)) {
+        let (mut near, mut faces) = (Slots::new(), Slots::new());
+        for h in self.outgoing_slots(b) {
+            near.push(self.target_slot(h));
+            faces.extend(large(h));
+        }
+        let is_long = near.len() > 16;
+        if is_long {
+            near.sort_unstable();
+            faces.sort_unstable();
+        }
+        let has =
+            |list: &Slots, x: u32| if is_long { list.binary_search(&x).is_ok() } else { list.contains(&x) };
+        let neighbors = self.outgoing_slots(a).map(|h| self.target_slot(h));
+        if let Some(v) = neighbors.filter(|v| !apex.contains(v)).find(|&v| has(&near, v)) {
             return Err(CollapseError::CommonNeighbor(self.vertices.key(v)));
         }
-        match common(faces(a), faces(b)) {
+        if faces.is_empty() {
+            return Ok(());
+        }
+        match self.outgoing_slots(a).filter_map(large).find(|&f| has(&faces, f)) {
             Some(f) => Err(CollapseError::CommonFace(self.faces.key(f))),
             None => Ok(()),
         }
@@ -288,7 +302,8 @@ impl Mesh {
     /// Merges the corners at the two ends of `h`, each column within its own seams.
     ///
     /// The corners in the face on either side of the edge become one, and with them all corners around either end that
-    /// hold the same value without a seam between. Other corners keep theirs.
+    /// hold the same value without a seam between. Other corners keep theirs. Where the two sides hold the same value at
+    /// one end, a seam along the edge ends there: both sides become one, and the seam ends at the merged vertex.
     fn merge_wedges(&mut self, h: u32, share: f64) {
         // Clockwise from the edge, each end sees its own side's faces: those of `a` begin to the right, those of `b` to
         // the left.
@@ -299,28 +314,25 @@ impl Mesh {
                 .collect()
         };
         let (at_a, at_b) = (ring(h), ring(h ^ 1));
-        let open: Vec<bool> = at_a.iter().chain(&at_b).map(|&h| self.is_open(h)).collect();
-        let (open_a, open_b) = open.split_at(at_a.len());
-        // Corners in the left face: that of `a` at `h` itself, that of `b` first in its ring. Right: the other way round.
-        let left = (!self.is_open(h)).then(|| (at_b[0], h));
-        let right = (!self.is_open(h ^ 1)).then(|| (h ^ 1, at_a[0]));
+        let open = |ring: &Slots| -> SmallVec<[bool; 12]> { ring.iter().map(|&h| self.is_open(h)).collect() };
+        let (open_a, open_b) = (open(&at_a), open(&at_b));
+        // The corners of `b` and `a` in the left face: that of `a` is at `h` itself, that of `b` first in its ring. In the
+        // right face it is the other way round.
+        let left = (!self.is_open(h)).then(|| [at_b[0], h]);
+        let right = (!self.is_open(h ^ 1)).then(|| [h ^ 1, at_a[0]]);
         let undo = &mut self.undo;
         for (i, column) in self.columns.on(Kind::Corner) {
-            let mut follow: Vec<(u32, u32)> = Vec::new();
-            // The corners in the faces beside the edge belong to their own sides, whatever reaches them.
-            let left_b = left.map_or(NONE, |l| l.0);
-            let right_a = right.map_or(NONE, |r| r.1);
-            if let Some((b, a)) = right {
-                follow.extend(run(column.as_ref(), a, at_a.iter().zip(open_a)).map(|c| (b, c)));
-                let run_b = run(column.as_ref(), b, at_b.iter().zip(open_b).rev());
-                follow.extend(run_b.filter(|&c| c != left_b).map(|c| (b, c)));
-            }
-            if let Some((b, a)) = left {
-                // Where a wedge reaches both sides, the left one has it.
-                let run_a = run(column.as_ref(), a, at_a.iter().zip(open_a).rev());
-                follow.extend(run_a.filter(|&c| c != right_a).map(|c| (b, c)));
-                follow.extend(run(column.as_ref(), b, at_b.iter().zip(open_b)).map(|c| (b, c)));
-            }
+            let column = column.as_mut();
+            let wedges = |[b, a]: [u32; 2], is_left: bool, column: &dyn Dense| -> Slots {
+                let (a_run, b_run) = (at_a.iter().zip(&open_a), at_b.iter().zip(&open_b));
+                if is_left {
+                    run(column, a, a_run.rev()).chain(run(column, b, b_run)).collect()
+                } else {
+                    run(column, a, a_run).chain(run(column, b, b_run.rev())).collect()
+                }
+            };
+            // Read before anything is written: a wedge may reach around to the other side.
+            let all = [left.map(|l| wedges(l, true, column)), right.map(|r| wedges(r, false, column))];
             let mut write = |slot: u32, column: &mut dyn Dense, how: &dyn Fn(&mut dyn Dense)| {
                 if let Some(undo) = undo {
                     undo.push(Field::Value(Kind::Corner), slot, i);
@@ -328,32 +340,45 @@ impl Mesh {
                 }
                 how(column);
             };
-            for (b, a) in [right, left].into_iter().flatten() {
-                write(b, column.as_mut(), &|c| c.mix(Event::Merge, b, &[(b, 1.0 - share), (a, share)]));
+            if let (Some(l), Some(r)) = (left, right)
+                && (column.is_same(l[0], r[0]) || column.is_same(l[1], r[1]))
+            {
+                let mut sources: SmallVec<[(u32, f64); 4]> = SmallVec::new();
+                for (i, weight) in [(0, 1.0 - share), (1, share)] {
+                    if column.is_same(l[i], r[i]) {
+                        sources.push((l[i], weight));
+                    } else {
+                        sources.extend([(l[i], weight / 2.0), (r[i], weight / 2.0)]);
+                    }
+                }
+                write(l[0], column, &|c| c.mix(Event::Merge, l[0], &sources));
+                for &into in all.iter().flatten().flatten().filter(|&&into| into != l[0]) {
+                    write(into, column, &|c| c.copy(l[0], into));
+                }
+                continue;
             }
-            for (from, into) in follow.into_iter().filter(|(from, into)| from != into) {
-                write(into, column.as_mut(), &|c| c.copy(from, into));
+            for ([b, a], wedge) in
+                [left, right].into_iter().zip(&all).filter_map(|(s, w)| Some((s?, w.as_ref()?)))
+            {
+                write(b, column, &|c| c.mix(Event::Merge, b, &[(b, 1.0 - share), (a, share)]));
+                for &into in wedge.iter().filter(|&&into| into != b) {
+                    write(into, column, &|c| c.copy(b, into));
+                }
             }
         }
     }
 }
 
-/// The corners at the beginning of a ring that hold the same value as `first`, up to a seam or the boundary.
+/// The corners at the beginning of a ring that hold the same value as `first`, up to a seam or the boundary; `first` itself
+/// whatever it holds.
 fn run<'a>(
     column: &dyn Dense,
     first: u32,
     ring: impl Iterator<Item = (&'a u32, &'a bool)>,
 ) -> impl Iterator<Item = u32> {
-    let same: Slots =
-        ring.take_while(|&(&h, &open)| !open && column.is_same(first, h)).map(|(&h, _)| h).collect();
+    let same: Slots = ring
+        .take_while(|&(&h, &open)| !open && (h == first || column.is_same(first, h)))
+        .map(|(&h, _)| h)
+        .collect();
     same.into_iter()
-}
-
-/// What both lists hold. Sorted first if they are long.
-fn common(a: Slots, mut b: Slots) -> Option<u32> {
-    if a.len() * b.len() <= 256 {
-        return a.into_iter().find(|v| b.contains(v));
-    }
-    b.sort_unstable();
-    a.into_iter().find(|v| b.binary_search(v).is_ok())
 }

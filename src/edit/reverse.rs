@@ -1,6 +1,5 @@
 //! Reversing the winding of a component, or of the whole mesh.
 
-use crate::column::Kind;
 use crate::matching::NONE;
 use crate::{FaceKey, Mesh};
 
@@ -12,7 +11,7 @@ pub struct MissingFace(pub FaceKey);
 impl Mesh {
     /// Flips the mesh: reverses the winding of every face and negates carried normals. Twice is the identity; all keys
     /// stay valid, each half-edge stays with its face and now runs the other way, so that corner data moves to the
-    /// half-edge that now starts at the corner. O(elements).
+    /// half-edge that now starts at the corner. O(slots).
     ///
     /// # Examples
     /// ```
@@ -32,8 +31,8 @@ impl Mesh {
         self.reverse_elements(&edges, &vertices, &faces);
     }
 
-    /// Flips one component: reverses the winding of every face that can be reached from `f` across edges. O(its size),
-    /// and one byte per slot of the mesh.
+    /// Flips one component: reverses the winding of every face that can be reached from `f` across edges, and negates
+    /// the normals that it carries. As with [`reverse`](Self::reverse) all keys stay valid. O(its size).
     ///
     /// # Errors
     /// [`MissingFace`] on a dead key.
@@ -51,18 +50,21 @@ impl Mesh {
     /// ```
     pub fn reverse_component(&mut self, f: FaceKey) -> Result<(), MissingFace> {
         let first = self.face_slot(f).ok_or(MissingFace(f))?;
-        let faces = self.component_slots(first, &mut vec![false; self.faces.slot_count()]);
+        let faces: Vec<u32> = self.flood_faces(first, u32::MAX, |_| true).map(|(f, _)| f).collect();
         let mut edges = Vec::new();
         let mut vertices = Vec::new();
         for &f in &faces {
             for h in self.loop_slots(self.face_halfedge[f as usize]) {
-                edges.push(h >> 1);
-                vertices.push(self.origin[h as usize]);
+                // Each edge at the even one of its half-edges that have a face, each vertex at its first corner.
+                if h & 1 == 0 || self.face[h as usize ^ 1] == NONE {
+                    edges.push(h >> 1);
+                }
+                let v = self.origin[h as usize];
+                let first = self.vertex_halfedge[v as usize];
+                if h == first || self.face[first as usize] == NONE && h == self.next[first as usize ^ 1] {
+                    vertices.push(v);
+                }
             }
-        }
-        for list in [&mut edges, &mut vertices] {
-            list.sort_unstable();
-            list.dedup();
         }
         self.reverse_elements(&edges, &vertices, &faces);
         Ok(())
@@ -85,16 +87,12 @@ impl Mesh {
             if h != NONE {
                 self.set_vertex_halfedge(v, self.prev[h as usize]);
             }
-            if let Some(column) = self.normals
-                && let Some(normal) = self.normal_column().and_then(|n| n.get(v).copied())
-            {
-                self.write_value(Kind::Vertex, column.index, v, -normal);
-            }
         }
         for &f in faces {
             self.rotate_corners(self.face_halfedge[f as usize]);
             self.set_face_halfedge(f, self.prev[self.face_halfedge[f as usize] as usize]);
         }
+        self.negate_normals(vertices, faces);
         for &e in edges {
             let (h, t) = (2 * e, 2 * e + 1);
             let (a, b) = (self.origin[h as usize], self.origin[t as usize]);

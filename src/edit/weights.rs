@@ -8,6 +8,9 @@ use smallvec::SmallVec;
 
 type Weights = SmallVec<[f64; 8]>;
 
+/// Slots with their weights.
+type Sources = SmallVec<[(u32, f64); 8]>;
+
 /// The mean value coordinates of a point in a polygon, projected along the polygon's area vector: weights that sum to one
 /// and give back every linear function on a plane polygon. Equal weights where there are none (no area).
 ///
@@ -61,11 +64,7 @@ pub(super) fn mean_value(corners: &[DVec3], point: DVec3) -> Weights {
 
 impl Mesh {
     /// The corners of a loop with their weights at a point: one list by vertex, one by half-edge.
-    pub(super) fn loop_weights(
-        &self,
-        first: u32,
-        point: DVec3,
-    ) -> (SmallVec<[(u32, f64); 8]>, SmallVec<[(u32, f64); 8]>) {
+    pub(super) fn loop_weights(&self, first: u32, point: DVec3) -> (Sources, Sources) {
         let points: SmallVec<[DVec3; 8]> = self.loop_slots(first).map(|h| self.at(h)).collect();
         let weights = mean_value(&points, point);
         let each = || self.loop_slots(first).zip(weights.iter().copied());

@@ -1,8 +1,14 @@
-//! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures.
+//! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures; transforms, weld,
+//! subdivision and smoothing in bulk.
 
+pub(crate) mod deform;
 pub(crate) mod measure;
 pub(crate) mod normals;
+pub(crate) mod smooth;
+pub(crate) mod subdivide;
+pub(crate) mod transform;
 pub(crate) mod triangulate;
+pub(crate) mod weld;
 
 use glam::DVec3;
 
@@ -25,4 +31,11 @@ pub(crate) fn direction(v: DVec3) -> DVec3 {
     let scaled = v * scale;
     let length = scaled.length();
     if length > 0.0 && length.is_finite() { scaled / length } else { DVec3::ZERO }
+}
+
+/// The distance of two points; safe for any two, infinite if it is beyond f64.
+pub(crate) fn distance(a: DVec3, b: DVec3) -> f64 {
+    let apart = b - a;
+    let scale = unit_scale(std::iter::once(apart));
+    (apart * scale).length() / scale
 }

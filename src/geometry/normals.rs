@@ -31,7 +31,7 @@ pub(crate) fn double_area_vector(points: impl Iterator<Item = DVec3>) -> DVec3 {
 }
 
 /// The angle at `b` between the edges to `a` and `c`, in radians.
-fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+pub(crate) fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let (u, v) = (direction(a - b), direction(c - b));
     // Kahan: exact to rounding for every angle, where acos loses half the digits.
     2.0 * (u - v).length().atan2((u + v).length())
@@ -126,9 +126,27 @@ impl Mesh {
         self.positions[self.origin[h as usize] as usize]
     }
 
-    fn normal_of_face(&self, f: u32) -> DVec3 {
-        let corners = || self.loop_slots(self.face_halfedge[f as usize]).map(|h| self.at(h));
+    pub(crate) fn normal_of_face(&self, f: u32) -> DVec3 {
+        let first = self.corner_across_longest(self.face_halfedge[f as usize]);
+        let corners = || self.loop_slots(first).map(|h| self.at(h));
         let scale = unit_scale(corners());
         direction(double_area_vector(corners().map(|p| p * scale)))
+    }
+
+    /// The half-edge of a triangle whose origin lies across from its longest side: of a sliver, only the product of the
+    /// two shorter sides keeps the digits of the normal. The half-edge itself on other faces.
+    fn corner_across_longest(&self, h: u32) -> u32 {
+        let [a, b, c] = [h, self.next[h as usize], self.prev[h as usize]];
+        if self.next[b as usize] != c {
+            return h;
+        }
+        let across = |h: u32| super::distance(self.at(self.next[h as usize]), self.at(self.prev[h as usize]));
+        [b, c]
+            .into_iter()
+            .fold((a, across(a)), |best, h| {
+                let length = across(h);
+                if length > best.1 { (h, length) } else { best }
+            })
+            .0
     }
 }

@@ -44,15 +44,15 @@ pub enum NoteKind {
     /// A texture or normal index names nothing; that corner has no value.
     #[error("texture or normal indices that name nothing, left out")]
     AttributeOutOfRange,
+    /// The texture coordinates of a face are not two numbers for each corner; left out.
+    #[error("texture coordinates that do not fit their face, left out")]
+    TextureCoordinateCount,
     /// Statements, elements or properties that a mesh has no place for.
     #[error("statements or properties that a mesh has no place for, left out")]
     Ignored,
     /// Point and line elements; left out.
     #[error("points or lines, left out")]
     PointOrLine,
-    /// Facet normals, which the faces imply; left out.
-    #[error("facet normals, left out: the faces imply them")]
-    FacetNormal,
     /// Colours of faces; left out.
     #[error("face colours, left out")]
     FaceColor,
@@ -269,4 +269,10 @@ pub enum Lost {
     /// Groups and materials.
     #[error("groups and materials")]
     Groups,
+    /// Normals of vertices that no corner has, because corners have their own or there are none.
+    #[error("normals of vertices beside those of corners")]
+    VertexNormals,
+    /// The names of files that describe materials.
+    #[error("the names of material files")]
+    MaterialFiles,
 }

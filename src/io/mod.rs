@@ -20,6 +20,8 @@ pub use ply::{read_ply, write_ply, write_ply_ascii, write_ply_big_endian};
 pub use stl::{read_stl, write_stl, write_stl_ascii};
 
 use crate::{CornerData, PolygonSoup, Polygons};
+use glam::DVec3;
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -207,22 +209,75 @@ fn per_vertex<'s, T>(data: &'s [T], soup: &PolygonSoup) -> Option<&'s [T]> {
     (!data.is_empty() && data.len() == soup.positions.len()).then_some(data)
 }
 
-/// What a format carries that has room for one normal and one colour at each vertex.
-fn vertex_data(soup: &PolygonSoup) -> Vec<Lost> {
-    let carried = [
-        (Lost::Normals, soup.corner_normals.is_none() && per_vertex(&soup.vertex_normals, soup).is_some()),
-        (Lost::Colors, per_vertex(&soup.vertex_colors, soup).is_some()),
-    ];
-    carried.into_iter().filter(|c| c.1).map(|c| c.0).collect()
+/// What stands at vertices: as it is given there, or as all corners of each vertex say the same.
+struct VertexData<'s> {
+    normals: Option<Cow<'s, [DVec3]>>,
+    colors: Option<&'s [[f32; 4]]>,
+    uvs: Option<Cow<'s, [[f64; 2]]>>,
+}
+
+impl<'s> VertexData<'s> {
+    fn of(soup: &'s PolygonSoup) -> Self {
+        let given = per_vertex(&soup.vertex_normals, soup).map(Cow::Borrowed);
+        let of_corners =
+            || at_vertices(soup, soup.corner_normals.as_ref()?, |n| n.to_array().map(f64::to_bits));
+        let uvs = soup.corner_uvs.as_ref();
+        Self {
+            normals: given.or_else(of_corners),
+            colors: per_vertex(&soup.vertex_colors, soup),
+            uvs: uvs.and_then(|uvs| at_vertices(soup, uvs, |uv| uv.map(f64::to_bits))),
+        }
+    }
+
+    fn kinds(&self, soup: &PolygonSoup) -> Vec<Lost> {
+        // Beside vertex normals, those of corners are not looked at.
+        let is_all = soup.vertex_normals.is_empty() || !has_values(soup.corner_normals.as_ref());
+        let kinds = [
+            (Lost::Normals, self.normals.is_some() && is_all),
+            (Lost::Colors, self.colors.is_some()),
+            (Lost::TextureCoordinates, self.uvs.is_some()),
+        ];
+        kinds.into_iter().filter(|k| k.1).map(|k| k.0).collect()
+    }
+}
+
+/// The values of corners as those of vertices, if each vertex has one; the default where no corner names it.
+fn at_vertices<'s, T: Copy + Default, B: PartialEq>(
+    soup: &PolygonSoup,
+    data: &'s CornerData<T>,
+    bits: impl Fn(&T) -> B,
+) -> Option<Cow<'s, [T]>> {
+    let corners = soup.polygons.corners();
+    if data.indices == corners && data.values.len() == soup.positions.len() {
+        return Some(Cow::Borrowed(&data.values));
+    }
+    if data.indices.len() != corners.len() || corners.is_empty() {
+        return None;
+    }
+    let mut of: Vec<Option<T>> = vec![None; soup.positions.len()];
+    for (&v, &i) in corners.iter().zip(&data.indices) {
+        let value = data.values.get(i as usize)?;
+        let own = of.get_mut(v as usize)?.get_or_insert(*value);
+        if bits(own) != bits(value) {
+            return None;
+        }
+    }
+    Some(of.into_iter().map(Option::unwrap_or_default).collect())
+}
+
+/// Whether a corner has a value.
+fn has_values<T>(data: Option<&CornerData<T>>) -> bool {
+    data.is_some_and(|d| d.indices.iter().any(|&i| (i as usize) < d.values.len()))
 }
 
 /// What the soup has beyond positions and faces, less what was carried.
 fn lost(soup: &PolygonSoup, carried: &[Lost]) -> Vec<Lost> {
     let has = [
-        (Lost::Normals, !soup.vertex_normals.is_empty() || soup.corner_normals.is_some()),
+        (Lost::Normals, !soup.vertex_normals.is_empty() || has_values(soup.corner_normals.as_ref())),
         (Lost::Colors, !soup.vertex_colors.is_empty()),
-        (Lost::TextureCoordinates, soup.corner_uvs.is_some()),
+        (Lost::TextureCoordinates, has_values(soup.corner_uvs.as_ref())),
         (Lost::Groups, !soup.groups.is_empty()),
+        (Lost::MaterialFiles, !soup.material_files.is_empty()),
     ];
     has.into_iter().filter(|(kind, present)| *present && !carried.contains(kind)).map(|h| h.0).collect()
 }

@@ -4,12 +4,12 @@ use crate::matching::NONE;
 use crate::{FaceKey, HalfedgeKey, Mesh};
 
 impl Mesh {
-    /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(edges).
+    /// Whether there is a face and no boundary. [`closed`](Self::closed) gives the proof, or the witnesses. O(slots).
     pub fn is_closed(&self) -> bool {
         self.face_count() > 0 && self.boundary_slots().next().is_none()
     }
 
-    /// The half-edges without a face, in the order of edges. O(edges).
+    /// The half-edges without a face, in the order of edges. O(slots).
     pub fn boundary_halfedges(&self) -> impl Iterator<Item = HalfedgeKey> + '_ {
         self.boundary_slots().map(|h| self.halfedge_key(h))
     }
@@ -19,7 +19,7 @@ impl Mesh {
     }
 
     /// The boundary loops (naked edges), each as its half-edges in [`next`](Self::next) order, in the order of their
-    /// first edges. A closed mesh has none. O(edges).
+    /// first edges. A closed mesh has none. O(slots).
     ///
     /// # Examples
     /// ```
@@ -48,7 +48,7 @@ impl Mesh {
     }
 
     /// The components: faces joined across edges, each list in the order of a breadth-first walk from its first face,
-    /// the lists in the order of their first faces. O(half-edges).
+    /// the lists in the order of their first faces. O(slots).
     ///
     /// # Examples
     /// ```
@@ -72,7 +72,7 @@ impl Mesh {
         components
     }
 
-    pub(crate) fn component_slots(&self, first: u32, seen: &mut [bool]) -> Vec<u32> {
+    fn component_slots(&self, first: u32, seen: &mut [bool]) -> Vec<u32> {
         seen[first as usize] = true;
         let mut faces = vec![first];
         let mut done = 0;
@@ -88,7 +88,7 @@ impl Mesh {
         faces
     }
 
-    /// Vertices that have a face, less edges, plus faces. O(vertices).
+    /// Vertices that have a face, less edges, plus faces. O(slots).
     pub fn euler_characteristic(&self) -> i64 {
         let used = self.vertices.live().filter(|&v| self.vertex_halfedge[v as usize] != NONE).count();
         used as i64 - self.edge_count() as i64 + self.face_count() as i64

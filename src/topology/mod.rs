@@ -13,7 +13,7 @@ pub use orient::{NotOrientable, unify_winding};
 
 pub(crate) use duplicates::{Cycle, duplicate_faces};
 pub(crate) use fans::fan_roots;
-pub(crate) use orient::{flip_faces, orient};
+pub(crate) use orient::{flip_faces, orient, with_flipped};
 pub(crate) use union_find::UnionFind;
 
 use crate::matching::Matching;

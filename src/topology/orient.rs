@@ -5,7 +5,6 @@ use crate::indexed::list;
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
 use crate::{IndexedMesh, Polygons};
-use glam::DVec3;
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -30,8 +29,9 @@ impl fmt::Display for NotOrientable {
 ///
 /// Each part that hangs together across two-face edges is unified by itself, and the largest piece of it whose winding
 /// is consistent keeps its winding (the one with the lowest face, among equals). Edges with three or more faces are
-/// never crossed. A reversed face keeps its first corner. Given normals and the vertices stay as they are. O(corners),
-/// on the same matched half-edges that [`Mesh::build`](crate::Mesh::build) uses.
+/// never crossed. A reversed face keeps its first corner; corner data moves with its corners, and corner normals turn with
+/// the face unless they lie on the side where it then faces. Vertices and their normals stay as they are. O(corners), on
+/// the same matched half-edges that [`Mesh::build`](crate::Mesh::build) uses.
 ///
 /// # Errors
 /// [`NotOrientable`] with a witness for each part that cannot be oriented.
@@ -49,33 +49,41 @@ impl fmt::Display for NotOrientable {
 /// ```
 pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, NotOrientable> {
     let mesh = topology.mesh;
-    let mut polygons = mesh.polygons().clone();
-    let mut report = Report::default();
+    let mut flip = vec![false; mesh.face_count()];
     if topology.matching.any_conflict {
-        let found = orient(&polygons, &topology.face_of, &topology.matching.mates());
+        let found = orient(mesh.polygons(), &topology.face_of, &topology.matching.mates());
         if !found.cycles.is_empty() {
             return Err(NotOrientable { cycles: found.cycles });
         }
-        flip_faces(&mut polygons, None, &found.flip);
-        for (face, _) in found.flip.iter().enumerate().filter(|(_, flip)| **flip) {
-            let corners = &mesh.polygons()[face];
-            let sum: DVec3 =
-                corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
-            report.records.push(Record {
-                step: Step::Unify,
-                kind: Kind::FlippedFace,
-                element: Element::Face(face as u32),
-                place: Some(sum),
-            });
-        }
+        flip = found.flip;
     }
-    report.steps.push(StepSummary { step: Step::Unify, changed: report.records.len(), tolerance: None });
-    let normals = mesh.normals().map(<[DVec3]>::to_vec);
-    Ok(Outcome {
-        value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, normals),
+    Ok(with_flipped(mesh, &flip, Step::Unify))
+}
+
+/// The pool with the given faces reversed, each of which keeps its first corner, and an account of it.
+pub(crate) fn with_flipped(mesh: &IndexedMesh, flip: &[bool], step: Step) -> Outcome<IndexedMesh> {
+    let mut polygons = mesh.polygons().clone();
+    let mut attributes = mesh.attributes().clone();
+    let mut report = Report::default();
+    flip_faces(&mut polygons, None, flip);
+    attributes.turn_with(flip, mesh.positions(), &polygons);
+    for (face, _) in flip.iter().enumerate().filter(|(_, flip)| **flip) {
+        attributes.reverse_corners(polygons.starts()[face]..polygons.starts()[face + 1]);
+        let corners = &mesh.polygons()[face];
+        let middle = corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
+        report.records.push(Record {
+            step,
+            kind: Kind::FlippedFace,
+            element: Element::Face(face as u32),
+            place: Some(middle),
+        });
+    }
+    report.steps.push(StepSummary { step, changed: report.records.len(), tolerance: None });
+    Outcome {
+        value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, None).carrying(attributes),
         report,
         maps: Maps::identity(mesh.vertex_count(), mesh.face_count()),
-    })
+    }
 }
 
 /// What [`orient`] found.

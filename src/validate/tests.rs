@@ -315,7 +315,7 @@ fn m18_a_position_or_normal_that_is_not_finite_is_found() {
     finds(&mesh, |v| matches!(v, Violation::NonFinite(_)));
     let mut mesh = cube();
     mesh.compute_normals(crate::NormalWeight::Area);
-    let column = mesh.normals.unwrap().index;
+    let column = mesh.carried.normals.unwrap().index;
     mesh.write_value(crate::column::Kind::Vertex, column, 2, DVec3::INFINITY);
     finds(&mesh, |v| matches!(v, Violation::NonFinite(_)));
 }

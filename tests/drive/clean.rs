@@ -1,9 +1,9 @@
 //! From bytes to a soup, through the whole ladder: the body of the property test, the fuzz target and the regressions.
 
 use arbitrary::{Arbitrary, Result, Unstructured};
-use meshwright::cleanup::{CleanOptions, Weld, clean, index};
+use meshwright::cleanup::{CleanOptions, Weld, clean, clean_indexed, index};
 use meshwright::glam::DVec3;
-use meshwright::{IndexedMesh, Kind, Mesh, PolygonSoup, Polygons};
+use meshwright::{CornerData, Group, IndexedMesh, Kind, Mesh, PolygonSoup, Polygons};
 
 /// A soup small enough for every way of going wrong to come up. Prints as Rust, to be pasted as a regression.
 #[derive(Arbitrary, Clone, Debug)]
@@ -126,6 +126,61 @@ pub(crate) fn check(case: &Soup) {
     assert!(again.maps.vertices.is_identity() && again.maps.faces.is_identity());
 
     ladder(&soup);
+    attributes(soup, weld, &pool);
+}
+
+/// Attributes that say where they come from are found there after clean-up, and on the mesh's own corners.
+fn attributes(mut soup: PolygonSoup, weld: Weld, pool: &IndexedMesh) {
+    let at = |v: u32| soup.positions.get(v as usize).copied().unwrap_or_default();
+    let place = |p: DVec3| p.x + 8.0 * p.y + 64.0 * p.z;
+    let faces = soup.polygons.iter().zip(0u32..);
+    let values: Vec<[f64; 2]> =
+        faces.flat_map(|(face, f)| face.iter().map(move |&v| [f64::from(f), place(at(v))])).collect();
+    let group = |f: usize| Group { name: format!("{f}"), material: None, faces: f..f + 1 };
+    let groups: Vec<Group> = (0..soup.polygons.len()).map(group).collect();
+    soup.corner_uvs = Some(CornerData { indices: (0..values.len() as u32).collect(), values });
+    soup.groups = groups;
+    soup.vertex_normals = (0..soup.positions.len()).map(|v| DVec3::X * (v + 1) as f64).collect();
+    soup.vertex_colors = soup.positions.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 1.0]).collect();
+
+    let options = CleanOptions { weld, ..Default::default() };
+    let cleaned = clean_indexed(&soup, options).expect("a soup is never refused");
+    let clean = &cleaned.value;
+    assert_eq!((clean.positions(), clean.polygons()), (pool.positions(), pool.polygons()));
+    assert_eq!(cleaned.report.not_carried, []);
+    let (carried, maps) = (clean.attributes(), &cleaned.maps);
+    let is_middle = |v: u32| maps.vertices.old_of(v as usize).is_empty();
+    let mut corner = 0;
+    for (f, face) in clean.polygons().iter().enumerate() {
+        let old = maps.faces.old_of(f)[0];
+        let groups = carried.face_groups.as_ref().expect("as many as faces");
+        assert_eq!(groups.group(f).map(|g| &g.name), Some(&old.to_string()));
+        for &v in face {
+            let uv = carried.corner_uvs.as_ref().and_then(|uvs| uvs[corner]).expect("each corner has one");
+            assert_eq!(uv.x, f64::from(old));
+            if !matches!(weld, Weld::Within(_)) {
+                assert_eq!(uv.y, place(clean.positions()[v as usize]), "face {f}, vertex {v}");
+            }
+            if let Some(normal) = carried.corner_normals.as_ref().and_then(|normals| normals[corner])
+                && !is_middle(v)
+            {
+                let source = normal.x.abs() as usize - 1;
+                assert!(maps.vertices.new_of(source).contains(&v), "the normal of {source} at {v}");
+            }
+            corner += 1;
+        }
+    }
+    for (v, p) in clean.positions().iter().enumerate() {
+        let normal = carried.vertex_normals.as_ref().map(|n| n[v].x);
+        assert!(normal.is_none_or(|n| is_middle(v as u32) || [n as u32 - 1] == maps.vertices.old_of(v)));
+        let [x, y, z, _] = carried.vertex_colors.as_ref().expect("one per vertex")[v].map(f64::from);
+        assert!(matches!(weld, Weld::Within(_)) || DVec3::new(x, y, z) == *p);
+    }
+    // To a soup and back.
+    let again = PolygonSoup::from(clean.clone());
+    assert_eq!(IndexedMesh::try_from(again.clone()).as_ref(), Ok(clean));
+    assert_eq!(index(&again, Weld::None).expect("never refused").value, *clean);
+    assert_eq!(clean.clone().reversed().reversed(), *clean);
 }
 
 /// The rungs without clean-up: refusals are exact.

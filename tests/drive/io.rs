@@ -2,8 +2,10 @@
 
 #![allow(dead_code, reason = "each target takes one")]
 
+use meshwright::cleanup::{Weld, index};
+use meshwright::glam::DVec3;
 use meshwright::io::{self, Encoding, Format, Limits, Lost};
-use meshwright::{CornerData, PolygonSoup};
+use meshwright::{CornerData, IndexedMesh, PolygonSoup};
 
 /// Small enough that a fuzzer finds whatever breaks them.
 const LIMITS: Limits = Limits { bytes: 1 << 20, vertices: 4096, faces: 4096, corners: 16384 };
@@ -35,11 +37,27 @@ fn drive(bytes: &[u8], format: Format) {
     assert!(soup.corner_uvs.as_ref().is_none_or(|d| d.indices.len() == corners));
     assert!(soup.corner_normals.as_ref().is_none_or(|d| d.indices.len() == corners));
     assert!(soup.groups.iter().all(|g| g.faces.end <= soup.polygons.len()));
+    through_the_pool(&soup);
     for format in [Format::Obj, Format::Ply, Format::Off, Format::Stl] {
         for encoding in [Encoding::Binary, Encoding::BigEndian, Encoding::Ascii] {
             round_trip(&soup, format, encoding);
         }
     }
+}
+
+/// A valid vertex pool carries all that was read, and gives it back.
+fn through_the_pool(soup: &PolygonSoup) {
+    let indexed = index(soup, Weld::None).expect("a soup is never refused");
+    let Ok(pool) = IndexedMesh::try_from(soup.clone()) else { return };
+    assert!(pool == indexed.value, "what needs no repair is carried as it is");
+    let back = PolygonSoup::from(pool.clone());
+    assert_eq!(values_at_corners(&back.corner_uvs), values_at_corners(&soup.corner_uvs));
+    assert_eq!(values_at_corners(&back.corner_normals), values_at_corners(&soup.corner_normals));
+    assert_eq!(
+        (&back.vertex_normals, &back.vertex_colors, &back.material_files),
+        (&soup.vertex_normals, &soup.vertex_colors, &soup.material_files)
+    );
+    assert_eq!(IndexedMesh::try_from(back), Ok(pool));
 }
 
 /// What is written reads back equal, but for what the writer says is lost.
@@ -71,14 +89,14 @@ pub(crate) fn round_trip(soup: &PolygonSoup, format: Format, encoding: Encoding)
     let same = |a: &dyn std::fmt::Debug, b: &dyn std::fmt::Debug| {
         assert_eq!(format!("{a:?}"), format!("{b:?}"), "{format:?} {encoding:?}");
     };
-    if let (false, Some(uvs)) = (lost.contains(&Lost::TextureCoordinates), &soup.corner_uvs) {
-        same(&values_at_corners(uvs), &back.corner_uvs.as_ref().map(values_at_corners).unwrap_or_default());
+    if !lost.contains(&Lost::TextureCoordinates) {
+        same(&values_at_corners(&soup.corner_uvs), &values_at_corners(&back.corner_uvs));
     }
-    if let (false, Some(normals)) = (lost.contains(&Lost::Normals), &soup.corner_normals) {
-        same(
-            &values_at_corners(normals),
-            &back.corner_normals.as_ref().map(values_at_corners).unwrap_or_default(),
-        );
+    if !lost.contains(&Lost::Normals) {
+        same(&normals_at_corners(soup), &normals_at_corners(&back));
+    }
+    if !lost.contains(&Lost::MaterialFiles) {
+        assert_eq!(back.material_files, soup.material_files, "{format:?} {encoding:?} keeps material files");
     }
     if !lost.contains(&Lost::Colors) && !soup.vertex_colors.is_empty() {
         let opaque = lost.contains(&Lost::Transparency);
@@ -89,6 +107,18 @@ pub(crate) fn round_trip(soup: &PolygonSoup, format: Format, encoding: Encoding)
     }
 }
 
-fn values_at_corners<T: Copy>(data: &CornerData<T>) -> Vec<Option<T>> {
-    data.indices.iter().map(|&i| data.values.get(i as usize).copied()).collect()
+/// Empty if no corner has a value.
+fn values_at_corners<T: Copy>(data: &Option<CornerData<T>>) -> Vec<Option<T>> {
+    let values = data.iter().flat_map(|d| d.indices.iter().map(|&i| d.values.get(i as usize).copied()));
+    let values: Vec<Option<T>> = values.collect();
+    if values.iter().all(Option::is_none) { Vec::new() } else { values }
+}
+
+/// A format may say normals of vertices as those of corners, and the other way round.
+fn normals_at_corners(soup: &PolygonSoup) -> Vec<Option<DVec3>> {
+    let of_corners = values_at_corners(&soup.corner_normals);
+    if of_corners.is_empty() && !soup.vertex_normals.is_empty() {
+        return soup.polygons.corners().iter().map(|&v| Some(soup.vertex_normals[v as usize])).collect();
+    }
+    of_corners
 }

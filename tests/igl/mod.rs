@@ -6,6 +6,7 @@
 #![allow(dead_code, reason = "each test asks what it needs")]
 
 use meshwright::IndexedMesh;
+use meshwright::glam::DVec3;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -46,11 +47,39 @@ impl Igl {
 
     /// Asks about a mesh; its polygons must be triangles.
     pub(crate) fn ask(&mut self, mesh: &IndexedMesh) -> Opinion {
+        self.ask_about(mesh, &[])
+    }
+
+    /// Asks about a mesh and points near it.
+    pub(crate) fn ask_about(&mut self, mesh: &IndexedMesh, points: &[DVec3]) -> Opinion {
+        self.send(mesh, points, "facts")
+    }
+
+    /// Asks for another mesh: `loop1` is one level of `igl.loop`, `upsample2` two of `igl.upsample`.
+    pub(crate) fn ask_for(&mut self, mesh: &IndexedMesh, call: &str) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let opinion = self.call(mesh, call);
+        let triangles = opinion.integers("faces");
+        let index = |v: i64| u32::try_from(v).expect("an index");
+        (
+            opinion.points("vertices"),
+            triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(index)).collect(),
+        )
+    }
+
+    /// Asks with a call that the server knows.
+    pub(crate) fn call(&mut self, mesh: &IndexedMesh, call: &str) -> Opinion {
+        self.send(mesh, &[], call)
+    }
+
+    fn send(&mut self, mesh: &IndexedMesh, points: &[DVec3], call: &str) -> Opinion {
         assert!(mesh.polygons().iter().all(|f| f.len() == 3), "libigl takes triangles");
-        let sizes = serde_json::json!({ "vertices": mesh.vertex_count(), "faces": mesh.face_count() });
+        let sizes = serde_json::json!({
+            "vertices": mesh.vertex_count(), "faces": mesh.face_count(), "points": points.len(), "call": call,
+        });
         let mut request = format!("{sizes}\n").into_bytes();
         request.extend(mesh.positions().iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
         request.extend(mesh.polygons().corners().iter().flat_map(|&c| i64::from(c).to_le_bytes()));
+        request.extend(points.iter().flat_map(|p| p.to_array()).flat_map(f64::to_le_bytes));
         let to = self.to.as_mut().expect("a pipe");
         // The child reads a whole request before it answers, so this cannot block both.
         to.write_all(&request).and_then(|()| to.flush()).expect("libigl's process is gone");
@@ -104,6 +133,10 @@ impl Opinion {
             .chunks_exact(8)
             .map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes")))
             .collect()
+    }
+
+    pub(crate) fn points(&self, name: &str) -> Vec<DVec3> {
+        self.numbers(name).chunks_exact(3).map(DVec3::from_slice).collect()
     }
 
     pub(crate) fn flags(&self, name: &str) -> Vec<bool> {

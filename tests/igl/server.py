@@ -1,6 +1,7 @@
 """libigl behind a pipe: a JSON line and raw little-endian arrays each way.
 
-A request is {"vertices": n, "faces": m}, followed by n x 3 float64 and m x 3 int64. The answer is a JSON line of facts that
+A request is {"vertices": n, "faces": m, "points": k, "call": c}, followed by n x 3 float64, m x 3 int64 and k x 3 float64;
+"points" may be absent. The answer is a JSON line of facts that
 ends with {"arrays": [[name, dtype, shape], ...]}, followed by those arrays.
 """
 
@@ -21,7 +22,7 @@ def number(x):
     return float(x) if np.isfinite(x) else None
 
 
-def answer(v, f):
+def answer(v, f, points):
     """Everything the tests ask libigl about a triangle mesh. Indices must be in range: libigl does not look."""
     edges = igl.boundary_facets(f)[0]
     manifold = igl.is_edge_manifold(f)
@@ -44,7 +45,40 @@ def answer(v, f):
     }
     for name, weight in WEIGHTS.items():
         arrays["normals_" + name] = np.asarray(igl.per_vertex_normals(v, f, weight), dtype="<f8")
+    if len(points):
+        squares, _, nearest = igl.point_mesh_squared_distance(points, v, f)
+        arrays["point_square"] = np.asarray(squares, dtype="<f8")
+        arrays["point_nearest"] = np.asarray(nearest, dtype="<f8").reshape(-1, 3)
+        arrays["point_winding"] = np.asarray(igl.winding_number(v, f, points), dtype="<f8")
+        arrays["inertia"] = np.asarray(igl.moments(v, f)[2], dtype="<f8")
     return facts, arrays
+
+
+def mesh(v, f):
+    """A mesh as the answer."""
+    return {}, {
+        "vertices": np.asarray(v, dtype="<f8").reshape(-1, 3),
+        "faces": np.asarray(f, dtype="<i8").reshape(-1, 3),
+    }
+
+
+def laplacian(v, f, _):
+    """What the cotangent matrix makes of the positions, and its diagonal."""
+    matrix = igl.cotmatrix(v, f)
+    return {}, {
+        "laplacian": np.asarray(matrix @ v, dtype="<f8").reshape(-1, 3),
+        "diagonal": np.asarray(matrix.diagonal(), dtype="<f8"),
+    }
+
+
+CALLS = {
+    "facts": answer,
+    "loop1": lambda v, f, _: mesh(*igl.loop(v, f, 1)),
+    "loop2": lambda v, f, _: mesh(*igl.loop(v, f, 2)),
+    "upsample1": lambda v, f, _: mesh(*igl.upsample(v, f, 1)),
+    "upsample2": lambda v, f, _: mesh(*igl.upsample(v, f, 2)),
+    "cotmatrix": laplacian,
+}
 
 
 def read(stream, dtype, rows):
@@ -60,10 +94,11 @@ def main():
         request = json.loads(line)
         v = read(source, "<f8", request["vertices"])
         f = read(source, "<i8", request["faces"])
+        points = read(source, "<f8", request.get("points", 0))
         if len(f) == 0 or f.min() < 0 or f.max() >= len(v):
             facts, arrays = {"error": "no faces, or indices out of range"}, {}
         else:
-            facts, arrays = answer(v, f)
+            facts, arrays = CALLS[request["call"]](v, f, points)
         facts["arrays"] = [[name, a.dtype.str, list(a.shape)] for name, a in arrays.items()]
         sink.write(json.dumps(facts).encode() + b"\n")
         for array in arrays.values():

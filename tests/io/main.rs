@@ -239,6 +239,11 @@ fn mutated_files_never_panic() {
     let mut noise = Noise(1);
     let mut soup = shapes::soup(&shapes::cube());
     soup.vertex_colors = vec![[0.5; 4]; 8];
+    let values = (0..24).map(|c| [f64::from(c) / 8.0, 0.0]).collect();
+    soup.corner_uvs = Some(CornerData { values, indices: (0..24).collect() });
+    soup.corner_normals = Some(CornerData { values: vec![DVec3::Z], indices: vec![0; 24] });
+    soup.groups = vec![Group { name: "a".into(), material: Some("b".into()), faces: 1..5 }];
+    soup.material_files = vec!["c.mtl".into()];
     let targets = [drive::obj as fn(&[u8]), drive::off, drive::ply, drive::stl];
     for (format, encoding) in ALL.into_iter().chain([(Format::Stl, Encoding::Binary)]) {
         let (file, _) = written(&soup, format, encoding);

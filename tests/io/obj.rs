@@ -164,3 +164,26 @@ fn long_names_are_not_copied_without_end() {
     let text = format!("v 0 0 0\nusemtl {}\n{}", "m".repeat(10_000), "g\nf\n".repeat(10_000));
     assert!(matches!(read_obj(text.as_bytes(), &limits()), Err(ReadError::Limit { .. })));
 }
+
+#[test]
+fn obj_keeps_the_names_of_material_files() {
+    let mut soup = shapes::soup(&shapes::cube());
+    soup.material_files = vec!["all materials.mtl".into(), "more.mtl".into()];
+    let (file, lost) = written(&soup, Format::Obj, Encoding::Ascii);
+    assert_eq!((read(&file, Format::Obj).soup, lost), (soup.clone(), vec![]));
+    soup.material_files = vec!["two\nlines".into()];
+    assert_eq!(written(&soup, Format::Obj, Encoding::Ascii).1, [Lost::MaterialFiles]);
+}
+
+#[test]
+fn vertex_normals_that_no_corner_has_are_lost_in_obj_and_that_is_said() {
+    let mut soup = shapes::soup(&shapes::cube());
+    soup.vertex_normals = vec![DVec3::Z; 8];
+    assert_eq!(written(&soup, Format::Obj, Encoding::Ascii).1, []);
+    soup.corner_normals = Some(CornerData { values: vec![DVec3::X], indices: vec![0; 24] });
+    assert_eq!(written(&soup, Format::Obj, Encoding::Ascii).1, [Lost::VertexNormals]);
+    soup.corner_normals = None;
+    soup.positions.push(DVec3::ONE * 2.0);
+    soup.vertex_normals.push(DVec3::X);
+    assert_eq!(written(&soup, Format::Obj, Encoding::Ascii).1, [Lost::VertexNormals]);
+}

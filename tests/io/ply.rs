@@ -129,3 +129,61 @@ fn binary_ply_is_read_with_every_type_and_lists_among_the_vertices() {
     assert_eq!(soup.positions[2], dvec3(-254.0, 200.0, 0.2));
     assert_eq!(soup.vertex_colors[0], [1.0, 0.0, 32768.0 / 65535.0, 1.0]);
 }
+
+#[test]
+fn ply_faces_may_have_texture_coordinates_colours_and_more() {
+    let header = HEADER.replace(
+        "end_header",
+        "property list uchar float texcoord\nproperty int texnumber\nproperty uchar red\nproperty uchar green\n\
+         property uchar blue\nend_header",
+    );
+    let header = header.replace("face 1", "face 4");
+    let vertices = "0 0 0\n1 0 0\n0 1 0\n";
+    let faces = "3 0 1 2 0 0 9 9 9\n3 2 1 0 6 0 0.25 1 0.5 0 1 0 9 9 9\n3 0 1 2 4 0 0 0 0 0 9 9 9\n3 1 2 0 0 0 9 9 9\n";
+    let loaded = read(format!("{header}{vertices}{faces}").as_bytes(), Format::Ply);
+    let none = CornerData::<f64>::NONE;
+    let expected = CornerData {
+        values: vec![[0.0, 0.25], [1.0, 0.5], [0.0, 1.0]],
+        indices: [vec![none; 3], vec![0, 1, 2], vec![none; 6]].concat(),
+    };
+    assert_eq!(loaded.soup.corner_uvs, Some(expected));
+    let end = Place::Line(14);
+    assert_eq!(
+        notes(&loaded),
+        [
+            (NoteKind::Ignored, end),
+            (NoteKind::FaceColor, end),
+            (NoteKind::TextureCoordinateCount, Place::Line(20))
+        ]
+    );
+}
+
+#[test]
+fn texture_coordinates_of_faces_go_before_those_of_vertices_in_ply() {
+    let header = HEADER
+        .replace("float z\n", "float z\nproperty float s\nproperty float t\n")
+        .replace("end_header", "property list uchar double texcoord\nend_header");
+    let body = "0 0 0 9 9\n1 0 0 9 9\n0 1 0 9 9\n3 0 1 2 6 0 0.1 1 0.5 0 1\n";
+    let loaded = read(format!("{header}{body}").as_bytes(), Format::Ply);
+    assert_eq!(loaded.soup.corner_uvs.as_ref().expect("given").values, [[0.0, 0.1], [1.0, 0.5], [0.0, 1.0]]);
+    assert_eq!(notes(&loaded), [(NoteKind::Ignored, Place::Line(12))]);
+}
+
+#[test]
+fn large_polygons_keep_their_texture_coordinates_in_ply() {
+    // 130 corners have 260 numbers: more than a byte counts.
+    let points: Vec<DVec3> = (0..130).map(|i| dvec3(f64::from(i), f64::from(i * i), 0.0)).collect();
+    let faces = vec![(0..130).collect(), vec![0, 1, 2]];
+    let mut soup = PolygonSoup::new(points, faces.into());
+    let single = |x: f64| f64::from(x as f32);
+    for (round, header) in [((|x| x) as fn(f64) -> f64, "double texcoord"), (single, "float texcoord")] {
+        let values = (0..133).map(|c| [round(f64::from(c) / 7.0), -0.0]).collect();
+        soup.corner_uvs = Some(CornerData { values, indices: (0..133).collect() });
+        for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::BigEndian] {
+            let (file, lost) = written(&soup, Format::Ply, encoding);
+            assert!(String::from_utf8_lossy(&file).contains(header) && lost.is_empty());
+            let back = read(&file, Format::Ply).soup;
+            assert_eq!(format!("{back:?}"), format!("{soup:?}"), "the sign of zero included");
+        }
+    }
+}

@@ -208,6 +208,20 @@ pub(crate) fn shuffled(of: &IndexedMesh, seed: u64) -> IndexedMesh {
     IndexedMesh::new(positions, polygons.collect()).expect("a valid vertex pool")
 }
 
+/// The shape in a file of raw numbers: see `benches/peers.rs`.
+pub(crate) fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn std::error::Error>> {
+    let word = |i: usize| raw[8 * i..8 * i + 8].try_into().map(u64::from_le_bytes);
+    let (vertices, triangles) = (word(0)? as usize, word(1)? as usize);
+    let (points, indices) = raw[16..].split_at(24 * vertices);
+    let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
+    let points =
+        points.chunks_exact(24).map(|p| DVec3::new(number(&p[..8]), number(&p[8..16]), number(&p[16..])));
+    let index = |b: &[u8]| u32::from_le_bytes(b.try_into().expect("four bytes"));
+    let corners = indices.chunks_exact(12).map(|t| [index(&t[..4]), index(&t[4..8]), index(&t[8..])]);
+    let corners: Vec<[u32; 3]> = corners.take(triangles).collect();
+    Ok(IndexedMesh::from_triangles(points.collect(), &corners)?)
+}
+
 /// Numbers that look random and are the same on every run (SplitMix64, Steele, Lea and Flood 2014).
 pub(crate) struct Noise(pub(crate) u64);
 

@@ -16,10 +16,10 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     let outcome = session.timed(Phase::Run, || {
         progress::shown(|hook| {
             let options = CleanOptions { weld: args.weld, control: Control::new(hook), ..Default::default() };
-            cleanup::clean(&loaded.soup, options)
+            cleanup::clean_indexed(&loaded.soup, options)
         })
     })?;
-    let soup: PolygonSoup = session.timed(Phase::Run, || outcome.value.to_indexed().into());
+    let soup: PolygonSoup = session.timed(Phase::Run, || outcome.value.into());
     // Splits leave vertices at one place, so the result is looked at as it is.
     let after = session.timed(Phase::Run, || cleanup::inspect(&soup, Weld::None))?;
     let lost = output::write_mesh(session, &args.output, &soup)?;
@@ -32,6 +32,7 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         "counts": report.counts(),
         "steps": report.steps,
         "not_carried": report.not_carried,
+        "lost_values": import::lost_values(report),
         "before": before,
         "after": after,
         "notes": loaded.notes,

@@ -1,5 +1,7 @@
 //! The commands, each from its arguments to its answer.
 
+mod ask;
+mod bulk;
 mod change;
 mod clean;
 mod look;
@@ -15,10 +17,18 @@ pub(crate) fn run(command: &Command, session: &mut Session) -> Result<Answer, Fa
         Command::IsClosed(args) => look::is_closed(session, args),
         Command::NakedEdges(args) => look::naked_edges(session, args),
         Command::Volume(args) => look::volume(session, args),
+        Command::Raycast(args) => ask::raycast(session, args),
+        Command::Closest(args) => ask::closest(session, args),
         Command::Clean(args) => clean::clean(session, args),
         Command::Convert(args) => change::convert(session, args),
         Command::Flip(args) => change::flip(session, args),
         Command::Unify(args) => change::unify(session, args),
+        Command::Weld(args) => bulk::weld(session, args),
+        Command::Unweld(args) => bulk::unweld(session, args),
+        Command::Smooth(args) => bulk::smooth(session, args),
+        Command::Subdivide(args) => bulk::subdivide(session, args),
+        Command::Transform(args) => bulk::transform(session, args),
+        Command::Deform(args) => bulk::deform(session, args),
     }
 }
 

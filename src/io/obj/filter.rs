@@ -21,6 +21,7 @@ pub(super) struct Kept {
     pub(super) corner_normals: Option<CornerData<DVec3>>,
     pub(super) corner_uvs: Option<CornerData<[f64; 2]>>,
     pub(super) groups: Vec<Group>,
+    pub(super) material_files: Vec<String>,
     pub(super) notes: Notes,
     /// Statements of a kind that occurs in OBJ files.
     pub(super) statements: u64,
@@ -62,6 +63,7 @@ struct Seen {
     normals: Attribute<DVec3>,
     uvs: Attribute<[f64; 2]>,
     groups: Vec<Group>,
+    material_files: Vec<String>,
     /// Bytes of names that were copied from one group to the next.
     inherited: usize,
     notes: Notes,
@@ -116,6 +118,7 @@ impl<'a> Filter<'a> {
             corner_normals,
             corner_uvs,
             groups: seen.groups,
+            material_files: seen.material_files,
             notes: seen.notes,
             statements: seen.statements,
         })
@@ -179,8 +182,15 @@ impl<'a> Filter<'a> {
                 return self.check_inherited();
             }
             b"l" | b"p" => seen.notes.add(NoteKind::PointOrLine, Place::Line(line)),
-            // Material files are not opened; smoothing groups say nothing that normals do not.
-            b"mtllib" | b"s" | b"vp" => {}
+            // Material files are not opened.
+            b"mtllib" => {
+                let name = seen.name(line, rest);
+                if !name.is_empty() {
+                    seen.material_files.push(name);
+                }
+            }
+            // Smoothing groups say nothing that normals do not.
+            b"s" | b"vp" => {}
             b"" => seen.statements -= 1,
             _ => {
                 seen.statements -= 1;

@@ -25,7 +25,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 /// Reads an OBJ file: vertices with colours, faces of any degree, texture coordinates and normals of corners, groups,
-/// objects and material names. Material files are not opened.
+/// objects, material names and the names of material files, which are not opened.
 ///
 /// The file's numbering is kept, unused vertices included. A face index that names no vertex is kept as one that names
 /// none, and noted; so is a face of fewer than three corners. A text of remarks alone is an empty soup. O(bytes).
@@ -126,6 +126,7 @@ fn combine(model: &tobj::Mesh, kept: Kept) -> Option<(PolygonSoup, Notes)> {
         corner_normals: kept.corner_normals,
         corner_uvs: kept.corner_uvs,
         groups: kept.groups,
+        material_files: kept.material_files,
         ..PolygonSoup::default()
     };
     Some((soup, kept.notes))

@@ -2,12 +2,13 @@
 
 use super::super::error::{Lost, WriteError};
 use super::super::text::Number;
-use super::super::{check_writable, lost, per_vertex};
+use super::super::{check_writable, has_values, lost, per_vertex};
 use crate::{CornerData, PolygonSoup};
+use glam::DVec3;
 use std::io::Write;
 
-/// Writes an OBJ file: vertices with colours, normals and texture coordinates, groups with material names. Coordinates
-/// keep all their digits.
+/// Writes an OBJ file: vertices with colours, normals and texture coordinates of corners, groups with material names and
+/// the names of material files. Coordinates keep all their digits. Vertex normals become those of all their corners.
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
@@ -26,6 +27,9 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
     if soup.positions.is_empty() {
         writeln!(sink, "# no vertices")?;
     }
+    for file in &soup.material_files {
+        writeln!(sink, "{}", statement("mtllib", file))?;
+    }
     let colors = per_vertex(&soup.vertex_colors, soup);
     for (i, p) in soup.positions.iter().enumerate() {
         write!(sink, "v {} {} {}", Number(p.x), Number(p.y), Number(p.z))?;
@@ -35,12 +39,13 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
         writeln!(sink)?;
     }
     let corners = soup.polygons.corners().len();
-    let uvs = soup.corner_uvs.as_ref().filter(|d| d.indices.len() == corners);
+    let uvs = soup.corner_uvs.as_ref().filter(|d| d.indices.len() == corners && has_values(Some(d)));
     for [u, v] in uvs.map_or(&[][..], |d| &d.values) {
         writeln!(sink, "vt {} {}", Number(*u), Number(*v))?;
     }
     // Corner normals say more than vertex normals.
-    let corner_normals = soup.corner_normals.as_ref().filter(|d| d.indices.len() == corners);
+    let corner_normals = soup.corner_normals.as_ref();
+    let corner_normals = corner_normals.filter(|d| d.indices.len() == corners && has_values(Some(d)));
     let vertex_normals = per_vertex(&soup.vertex_normals, soup).filter(|_| corner_normals.is_none());
     for n in corner_normals.map(|d| &d.values[..]).or(vertex_normals).unwrap_or(&[]) {
         writeln!(sink, "vn {} {} {}", Number(n.x), Number(n.y), Number(n.z))?;
@@ -91,7 +96,17 @@ pub fn write_obj(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
     if corner_normals.is_some() || vertex_normals.is_some() {
         carried.push(Lost::Normals);
     }
+    if soup.material_files.iter().all(|name| !name.is_empty() && one_line(name) == *name) {
+        carried.push(Lost::MaterialFiles);
+    }
     let mut lost = lost(soup, &carried);
+    if let Some(normals) = per_vertex(&soup.vertex_normals, soup) {
+        let mut named = vec![false; normals.len()];
+        soup.polygons.corners().iter().for_each(|&v| named[v as usize] = corner_normals.is_none());
+        if normals.iter().zip(named).any(|(n, named)| !named && *n != DVec3::ZERO) {
+            lost.push(Lost::VertexNormals);
+        }
+    }
     if colors.is_some_and(|c| c.iter().any(|rgba| rgba[3] != 1.0)) {
         lost.push(Lost::Transparency);
     }

@@ -2,11 +2,12 @@
 
 use super::super::error::{Lost, WriteError};
 use super::super::text::Number;
-use super::super::{check_writable, lost, per_vertex, vertex_data};
+use super::super::{VertexData, check_writable, lost};
 use crate::PolygonSoup;
 use std::io::Write;
 
-/// Writes an OFF file: `NOFF` with vertex normals, `COFF` with colours. Coordinates keep all their digits.
+/// Writes an OFF file: `NOFF` with vertex normals, `COFF` with colours, `STOFF` with texture coordinates where all corners
+/// of each vertex have the same. Coordinates keep all their digits.
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
@@ -22,18 +23,21 @@ use std::io::Write;
 /// ```
 pub fn write_off(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>, WriteError> {
     check_writable(soup)?;
-    let normals = per_vertex(&soup.vertex_normals, soup);
-    let colors = per_vertex(&soup.vertex_colors, soup);
-    let prefix = [if colors.is_some() { "C" } else { "" }, if normals.is_some() { "N" } else { "" }].concat();
+    let data = VertexData::of(soup);
+    let letters = [("ST", data.uvs.is_some()), ("C", data.colors.is_some()), ("N", data.normals.is_some())];
+    let prefix: String = letters.into_iter().filter(|l| l.1).map(|l| l.0).collect();
     writeln!(sink, "{prefix}OFF\n{} {} 0", soup.positions.len(), soup.polygons.len())?;
     for (i, p) in soup.positions.iter().enumerate() {
         write!(sink, "{} {} {}", Number(p.x), Number(p.y), Number(p.z))?;
-        if let Some(n) = normals.map(|n| n[i]) {
+        if let Some(n) = data.normals.as_ref().map(|n| n[i]) {
             write!(sink, " {} {} {}", Number(n.x), Number(n.y), Number(n.z))?;
         }
-        if let Some([r, g, b, a]) = colors.map(|c| c[i]) {
+        if let Some([r, g, b, a]) = data.colors.map(|c| c[i]) {
             // With a point, so that no reader takes them for bytes.
             write!(sink, " {r:?} {g:?} {b:?} {a:?}")?;
+        }
+        if let Some([u, v]) = data.uvs.as_ref().map(|uvs| uvs[i]) {
+            write!(sink, " {} {}", Number(u), Number(v))?;
         }
         writeln!(sink)?;
     }
@@ -44,5 +48,5 @@ pub fn write_off(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
         }
         writeln!(sink)?;
     }
-    Ok(lost(soup, &vertex_data(soup)))
+    Ok(lost(soup, &data.kinds(soup)))
 }

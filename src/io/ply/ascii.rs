@@ -8,7 +8,7 @@ use crate::PolygonSoup;
 
 pub(super) fn read(reader: &mut Reader, header: &Header, data: &[u8]) -> Result<(), ReadError> {
     let mut rows = Rows { lines: Lines::new(data), header_lines: header.lines, last: 0, in_remark: false };
-    let (mut values, mut corners) = (Vec::new(), Vec::new());
+    let mut row = Row::default();
     for element in &header.elements {
         let role = reader.role(element, Place::Line(header.lines), data.len());
         if element.properties.is_empty() {
@@ -19,13 +19,13 @@ pub(super) fn read(reader: &mut Reader, header: &Header, data: &[u8]) -> Result<
                 let last = header.lines + rows.last;
                 return Err(ReadError::line(last, Malformed::Truncated("the elements")));
             };
-            read_row(element, &role, line, content, &mut values, &mut corners)?;
+            row.read(element, &role, line, content)?;
             match &role {
                 Role::Vertex(layout) => {
-                    let value = |i: usize| values.get(i).copied().unwrap_or_default();
+                    let value = |i: usize| row.values.get(i).copied().unwrap_or_default();
                     reader.take_vertex(layout, value, Place::Line(line));
                 }
-                Role::Face(_) => reader.take_face(&corners, Place::Line(line))?,
+                Role::Face { .. } => reader.take_face(&row.corners, &row.texcoords, Place::Line(line))?,
                 Role::Other => {}
             }
         }
@@ -36,41 +36,48 @@ pub(super) fn read(reader: &mut Reader, header: &Header, data: &[u8]) -> Result<
     Ok(())
 }
 
-/// Fills in the scalars, with zeros in the places of lists, and the vertex indices of a face.
-fn read_row(
-    element: &Element,
-    role: &Role,
-    line: u64,
-    content: &[u8],
-    values: &mut Vec<f64>,
-    corners: &mut Vec<u32>,
-) -> Result<(), ReadError> {
-    let mut words = words(content);
-    values.clear();
-    for (i, property) in element.properties.iter().enumerate() {
-        let word = words.next().ok_or(ReadError::line(line, Malformed::Truncated("an element")))?;
-        if property.list.is_none() {
-            values.push(value(line, word, property.scalar)?);
-            continue;
-        }
-        values.push(0.0);
-        let length = index(line, word)?;
-        let is_wanted = matches!(role, Role::Face(list) if *list == i);
-        if is_wanted {
-            corners.clear();
-        }
-        for _ in 0..length {
-            let word = words.next().ok_or(ReadError::line(line, Malformed::Truncated("a list")))?;
-            if is_wanted {
-                corners.push(index(line, word)?);
-            } else {
-                value(line, word, property.scalar)?;
+/// One element.
+#[derive(Default)]
+struct Row {
+    /// The scalars, with zeros in the places of lists.
+    values: Vec<f64>,
+    /// The vertex indices of a face.
+    corners: Vec<u32>,
+    /// The texture coordinates of a face.
+    texcoords: Vec<f64>,
+}
+
+impl Row {
+    fn read(&mut self, element: &Element, role: &Role, line: u64, content: &[u8]) -> Result<(), ReadError> {
+        let mut words = words(content);
+        self.values.clear();
+        self.corners.clear();
+        self.texcoords.clear();
+        for (i, property) in element.properties.iter().enumerate() {
+            let word = words.next().ok_or(ReadError::line(line, Malformed::Truncated("an element")))?;
+            if property.list.is_none() {
+                self.values.push(value(line, word, property.scalar)?);
+                continue;
+            }
+            self.values.push(0.0);
+            let length = index(line, word)?;
+            for _ in 0..length {
+                let word = words.next().ok_or(ReadError::line(line, Malformed::Truncated("a list")))?;
+                match role {
+                    Role::Face { corners, .. } if *corners == i => self.corners.push(index(line, word)?),
+                    Role::Face { texcoords, .. } if *texcoords == Some(i) => {
+                        self.texcoords.push(value(line, word, property.scalar)?);
+                    }
+                    _ => {
+                        value(line, word, property.scalar)?;
+                    }
+                }
             }
         }
-    }
-    match words.next() {
-        Some(_) => Err(ReadError::line(line, Malformed::Expected("no more values than properties"))),
-        None => Ok(()),
+        match words.next() {
+            Some(_) => Err(ReadError::line(line, Malformed::Expected("no more values than properties"))),
+            None => Ok(()),
+        }
     }
 }
 

@@ -63,11 +63,12 @@ fn read_varying(
     element: &Element,
     role: &Role,
 ) -> Result<(), ReadError> {
-    let (mut values, mut corners) = (Vec::new(), Vec::new());
+    let (mut values, mut corners, mut texcoords) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..element.count {
         let start = input.at;
         let place = input.place();
         values.clear();
+        texcoords.clear();
         for (i, property) in element.properties.iter().enumerate() {
             let Some(count) = property.list else {
                 values.push(input.value(property.scalar, start)?);
@@ -83,16 +84,23 @@ fn read_varying(
             }
             // Below 2^32 times 8: fits.
             let bytes = input.bytes(length as usize * property.scalar.size(), start)?;
-            if matches!(role, Role::Face(list) if *list == i) {
-                corners.clear();
-                property.scalar.decode_indices(bytes, input.is_big, &mut corners);
+            match role {
+                Role::Face { corners: list, .. } if *list == i => {
+                    corners.clear();
+                    property.scalar.decode_indices(bytes, input.is_big, &mut corners);
+                }
+                Role::Face { texcoords: Some(list), .. } if *list == i => {
+                    let each = bytes.chunks_exact(property.scalar.size());
+                    texcoords.extend(each.filter_map(|b| property.scalar.decode(b, input.is_big)));
+                }
+                _ => {}
             }
         }
         match role {
             Role::Vertex(layout) => {
                 reader.take_vertex(layout, |i| values.get(i).copied().unwrap_or_default(), place);
             }
-            Role::Face(_) => reader.take_face(&corners, place)?,
+            Role::Face { .. } => reader.take_face(&corners, &texcoords, place)?,
             Role::Other => {}
         }
     }

@@ -3,11 +3,11 @@
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::{Limits, Loaded};
 use super::header::{self, Element, Encoding, Header};
-use crate::{PolygonSoup, Polygons};
+use crate::{CornerData, PolygonSoup, Polygons};
 use glam::DVec3;
 
-/// Reads a PLY file: positions, vertex normals, colours and texture coordinates, faces of any degree. Elements may come in
-/// any order. O(bytes).
+/// Reads a PLY file: positions, vertex normals and colours, texture coordinates of vertices or, where faces have lists of them
+/// (`texcoord`), of corners; faces of any degree. Elements may come in any order. O(bytes).
 ///
 /// # Errors
 /// [`ReadError`], with the line, or the byte of a binary file.
@@ -29,6 +29,8 @@ pub fn read_ply(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     let mut reader = Reader {
         soup: PolygonSoup::default(),
         uvs: Vec::new(),
+        uvs_at: None,
+        face_uvs: None,
         vertices: header.elements.iter().find(|e| e.name == b"vertex").map_or(0, |e| e.count),
         has_vertices: false,
         limits: *limits,
@@ -115,6 +117,10 @@ impl VertexLayout {
 pub(super) struct Reader {
     soup: PolygonSoup,
     uvs: Vec<[f64; 2]>,
+    /// Where they are said to be.
+    uvs_at: Option<Place>,
+    /// Those that faces give their corners, up to the last face that did.
+    face_uvs: Option<CornerData<[f64; 2]>>,
     /// How many vertices the header promises.
     vertices: u64,
     /// Whether the element that holds them was met; any other of that name is left out.
@@ -144,7 +150,13 @@ impl Reader {
         }
     }
 
-    pub(super) fn take_face(&mut self, corners: &[u32], place: Place) -> Result<(), ReadError> {
+    /// Takes a face with its texture coordinates, if it has any.
+    pub(super) fn take_face(
+        &mut self,
+        corners: &[u32],
+        texcoords: &[f64],
+        place: Place,
+    ) -> Result<(), ReadError> {
         self.limits.check_faces(self.soup.polygons.len() as u64 + 1)?;
         self.limits.check_corners((self.soup.polygons.corners().len() + corners.len()) as u64)?;
         for _ in corners.iter().filter(|&&v| u64::from(v) >= self.vertices) {
@@ -152,6 +164,18 @@ impl Reader {
         }
         if corners.len() < 3 {
             self.notes.add(NoteKind::ShortFace, place);
+        }
+        let (uvs, rest) = texcoords.as_chunks();
+        if uvs.len() != corners.len() || !rest.is_empty() {
+            if !texcoords.is_empty() {
+                self.notes.add(NoteKind::TextureCoordinateCount, place);
+            }
+        } else if !uvs.is_empty() {
+            let data = self.face_uvs.get_or_insert_default();
+            data.indices.resize(self.soup.polygons.corners().len(), CornerData::<[f64; 2]>::NONE);
+            let first = data.values.len() as u32;
+            data.indices.extend(first..first + uvs.len() as u32);
+            data.values.extend_from_slice(uvs);
         }
         self.soup.polygons.push(corners.iter().copied());
         Ok(())
@@ -165,19 +189,27 @@ impl Reader {
                 if !layout.is_complete {
                     self.notes.add(NoteKind::Ignored, place);
                 }
+                self.uvs_at = layout.uv.map(|_| place);
                 self.soup.positions.reserve(element.count as usize);
                 return Role::Vertex(layout);
             }
         }
-        if let Some(list) = face_list(element).filter(|_| element.name == b"face") {
-            if element.properties.len() > 1 {
+        if let Some(corners) = face_list(element).filter(|_| element.name == b"face") {
+            let texcoords = element.find(b"texcoord").filter(|&i| element.properties[i].list.is_some());
+            let has_color = element.find(b"red").is_some();
+            if has_color {
+                self.notes.add(NoteKind::FaceColor, place);
+            }
+            let known = |name: &[u8]| [&b"red"[..], b"green", b"blue", b"alpha"].contains(&name) && has_color;
+            let mut properties = element.properties.iter().enumerate();
+            if properties.any(|(i, p)| i != corners && Some(i) != texcoords && !known(&p.name)) {
                 self.notes.add(NoteKind::Ignored, place);
             }
             if self.soup.polygons.is_empty() {
                 let count = element.count as usize;
                 self.soup.polygons = Polygons::with_capacity(count, (3 * count).min(room));
             }
-            return Role::Face(list);
+            return Role::Face { corners, texcoords };
         }
         if element.count > 0 {
             self.notes.add(NoteKind::Ignored, place);
@@ -186,7 +218,12 @@ impl Reader {
     }
 
     fn finish(mut self) -> Loaded {
-        if !self.uvs.is_empty() {
+        if let Some(mut data) = self.face_uvs {
+            data.indices.resize(self.soup.polygons.corners().len(), CornerData::<[f64; 2]>::NONE);
+            self.soup.corner_uvs = Some(data);
+            // Those of vertices as well are left out.
+            self.uvs_at.into_iter().for_each(|place| self.notes.add(NoteKind::Ignored, place));
+        } else if !self.uvs.is_empty() {
             self.soup.corner_uvs = Some(super::super::uvs_of_vertices(&self.soup.polygons, self.uvs));
         }
         Loaded { soup: self.soup, notes: self.notes.finish() }
@@ -196,7 +233,11 @@ impl Reader {
 /// What an element is read for.
 pub(super) enum Role {
     Vertex(VertexLayout),
-    /// With the property that holds the vertex indices.
-    Face(usize),
+    Face {
+        /// The property that holds the vertex indices.
+        corners: usize,
+        /// The property that holds texture coordinates, two for each corner.
+        texcoords: Option<usize>,
+    },
     Other,
 }

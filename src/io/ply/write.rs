@@ -2,11 +2,13 @@
 
 use super::super::error::{Lost, WriteError};
 use super::super::text::Number;
-use super::super::{check_writable, lost, per_vertex, vertex_data};
-use crate::PolygonSoup;
+use super::super::{VertexData, check_writable, has_values, lost};
+use crate::{CornerData, PolygonSoup};
 use std::io::Write;
 
-/// Writes a little-endian PLY file: positions and normals in double precision, colours as bytes if they were bytes.
+/// Writes a little-endian PLY file: positions, normals and texture coordinates in double precision, colours as bytes if they
+/// were bytes. Normals stand at vertices; so do texture coordinates if all corners of each vertex have the same, and
+/// if not, each face has a list of them (`texcoord`), in single precision if they fit.
 ///
 /// # Errors
 /// [`WriteError`] when the soup could not be read back, or the sink fails.
@@ -24,6 +26,7 @@ pub fn write_ply(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<Lost>,
     write(soup, "binary_little_endian", sink, |sink, v| match v {
         Value::Double(x) => sink.write_all(&x.to_le_bytes()),
         Value::Float(x) => sink.write_all(&x.to_le_bytes()),
+        Value::Single(x) => sink.write_all(&(x as f32).to_le_bytes()),
         Value::Byte(x) => sink.write_all(&[x]),
         Value::Index(x) => sink.write_all(&x.to_le_bytes()),
         Value::EndOfElement => Ok(()),
@@ -48,6 +51,7 @@ pub fn write_ply_big_endian(soup: &PolygonSoup, sink: &mut impl Write) -> Result
     write(soup, "binary_big_endian", sink, |sink, v| match v {
         Value::Double(x) => sink.write_all(&x.to_be_bytes()),
         Value::Float(x) => sink.write_all(&x.to_be_bytes()),
+        Value::Single(x) => sink.write_all(&(x as f32).to_be_bytes()),
         Value::Byte(x) => sink.write_all(&[x]),
         Value::Index(x) => sink.write_all(&x.to_be_bytes()),
         Value::EndOfElement => Ok(()),
@@ -73,7 +77,7 @@ pub fn write_ply_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<
     write(soup, "ascii", sink, |sink, v| {
         let before = std::mem::replace(&mut separator, " ");
         match v {
-            Value::Double(x) => write!(sink, "{before}{}", Number(x)),
+            Value::Double(x) | Value::Single(x) => write!(sink, "{before}{}", Number(x)),
             Value::Float(x) => write!(sink, "{before}{x}"),
             Value::Byte(x) => write!(sink, "{before}{x}"),
             Value::Index(x) => write!(sink, "{before}{x}"),
@@ -88,6 +92,8 @@ pub fn write_ply_ascii(soup: &PolygonSoup, sink: &mut impl Write) -> Result<Vec<
 enum Value {
     Double(f64),
     Float(f32),
+    /// Fits single precision; in text it has the digits of double.
+    Single(f64),
     Byte(u8),
     Index(u32),
     EndOfElement,
@@ -100,15 +106,16 @@ fn write<W: Write>(
     mut put: impl FnMut(&mut W, Value) -> std::io::Result<()>,
 ) -> Result<Vec<Lost>, WriteError> {
     check_writable(soup)?;
-    let normals = per_vertex(&soup.vertex_normals, soup);
-    let colors = per_vertex(&soup.vertex_colors, soup);
+    let data = VertexData::of(soup);
+    let VertexData { normals, colors, uvs } = &data;
     let byte = |c: f32| (c * 255.0).round() as u8;
     let bytes = colors
         .is_some_and(|c| c.iter().flatten().all(|&c| (f32::from(byte(c)) / 255.0).to_bits() == c.to_bits()));
-    // Texture coordinates per vertex, where corners refer to them so.
-    let corners = soup.polygons.corners();
-    let uvs =
-        soup.corner_uvs.as_ref().filter(|d| d.values.len() == soup.positions.len() && d.indices == corners);
+    let corners = soup.polygons.corners().len();
+    let of_faces = soup.corner_uvs.as_ref().filter(|d| uvs.is_none() && d.indices.len() == corners);
+    let of_faces = of_faces.filter(|d| has_values(Some(*d)));
+    let fits_single = |x: f64| f64::from(x as f32).to_bits() == x.to_bits();
+    let is_single = of_faces.is_some_and(|d| d.values.iter().flatten().all(|&x| fits_single(x)));
 
     writeln!(sink, "ply\nformat {encoding} 1.0\nelement vertex {}", soup.positions.len())?;
     let mut properties = |names: &[&str], kind: &str| {
@@ -126,34 +133,54 @@ fn write<W: Write>(
     }
     // A byte counts the corners of nearly every file.
     let most = soup.polygons.iter().map(<[u32]>::len).max().unwrap_or(0);
-    let is_small = most <= 255;
-    let count = if is_small { "uchar" } else { "uint" };
-    writeln!(
-        sink,
-        "element face {}\nproperty list {count} uint vertex_indices\nend_header",
-        soup.polygons.len()
-    )?;
+    let is_small = |most: usize| most <= 255;
+    let list = |most| if is_small(most) { "list uchar" } else { "list uint" };
+    writeln!(sink, "element face {}\nproperty {} uint vertex_indices", soup.polygons.len(), list(most))?;
+    if of_faces.is_some() {
+        // Programs that know of such lists expect them in single precision.
+        let kind = if is_single { "float" } else { "double" };
+        writeln!(sink, "property {} {kind} texcoord", list(2 * most))?;
+    }
+    writeln!(sink, "end_header")?;
+    let count = |n: usize, most| if is_small(most) { Value::Byte(n as u8) } else { Value::Index(n as u32) };
 
     for (i, p) in soup.positions.iter().enumerate() {
-        for x in p.to_array().into_iter().chain(normals.into_iter().flat_map(|n| n[i].to_array())) {
+        for x in p.to_array().into_iter().chain(normals.iter().flat_map(|n| n[i].to_array())) {
             put(sink, Value::Double(x))?;
         }
-        for c in colors.into_iter().flat_map(|c| c[i]) {
+        for c in colors.iter().flat_map(|c| c[i]) {
             put(sink, if bytes { Value::Byte(byte(c)) } else { Value::Float(c) })?;
         }
-        for x in uvs.into_iter().flat_map(|d| d.values[i]) {
+        for x in uvs.iter().flat_map(|uvs| uvs[i]) {
             put(sink, Value::Double(x))?;
         }
         put(sink, Value::EndOfElement)?;
     }
+    let mut first = 0;
+    let mut is_whole = true;
     for face in soup.polygons.iter() {
-        put(sink, if is_small { Value::Byte(face.len() as u8) } else { Value::Index(face.len() as u32) })?;
+        put(sink, count(face.len(), most))?;
         for &v in face {
             put(sink, Value::Index(v))?;
         }
+        if let Some(data) = of_faces {
+            let own = first..first + face.len();
+            let is_complete = own.clone().all(|c| uv(data, c).is_some());
+            // A list has all or none.
+            is_whole &= is_complete || own.clone().all(|c| uv(data, c).is_none());
+            put(sink, count(if is_complete { 2 * face.len() } else { 0 }, 2 * most))?;
+            for x in own.filter(|_| is_complete).filter_map(|c| uv(data, c)).flatten() {
+                put(sink, if is_single { Value::Single(x) } else { Value::Double(x) })?;
+            }
+            first += face.len();
+        }
         put(sink, Value::EndOfElement)?;
     }
-    let mut carried = vertex_data(soup);
-    carried.extend(uvs.map(|_| Lost::TextureCoordinates));
+    let mut carried = data.kinds(soup);
+    carried.extend(of_faces.filter(|_| is_whole).map(|_| Lost::TextureCoordinates));
     Ok(lost(soup, &carried))
+}
+
+fn uv(data: &CornerData<[f64; 2]>, corner: usize) -> Option<[f64; 2]> {
+    data.values.get(*data.indices.get(corner)? as usize).copied()
 }

@@ -1,0 +1,14 @@
+//! Many questions at once: on several threads where the feature `rayon` allows it, in the order of the questions.
+
+/// The answer to every question.
+#[cfg(feature = "rayon")]
+pub(crate) fn each<T: Sync, R: Send>(questions: &[T], answer: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    use rayon::prelude::*;
+    questions.par_iter().with_min_len(64).map(answer).collect()
+}
+
+/// The answer to every question.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn each<T: Sync, R: Send>(questions: &[T], answer: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    questions.iter().map(answer).collect()
+}

@@ -1,0 +1,22 @@
+//! Questions about where a mesh lies: rays, closest points, inside or outside.
+
+mod batch;
+mod bvh;
+mod cast;
+mod closest;
+mod contacts;
+mod contains;
+mod exact;
+mod index;
+mod mass;
+mod nearest;
+mod outward;
+mod ray;
+mod side;
+
+pub use closest::{ClosestOptions, ClosestPoint, Nearest, QueryError};
+pub use contains::{Side, SolidIndex};
+pub use index::{Feature, MeshIndex};
+pub use mass::MassProperties;
+pub use outward::{OutwardError, OutwardOptions, OutwardPart, TurnedOutward, orient_outward};
+pub use ray::{Crossing, Ray, RayError, RayHit};
