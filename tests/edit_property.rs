@@ -197,7 +197,7 @@ fn every_operator_is_exact_on_every_element_of_every_start_and_after_a_few_edits
     let mut noise = Noise(7);
     for start in Start::ALL {
         try_everything(&World::new(start.build()));
-        for _ in 0..6 {
+        for _ in 0..4 {
             let mut world = World::new(start.build());
             for i in 0..8 {
                 world.step(i, &random_edit(&mut noise, None), true);

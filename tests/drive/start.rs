@@ -77,7 +77,8 @@ impl Start {
             Self::Pair => shapes::pool(ring(4, 1.0, 0.0).collect(), vec![vec![0, 1, 2], vec![0, 2, 3]]),
             Self::Strip => {
                 let points = (0..8).map(|i| dvec3(f64::from(i), f64::from(i % 2), 0.0)).collect();
-                let cut = |i: u32| if i % 2 == 0 { vec![i, i + 2, i + 1] } else { vec![i, i + 1, i + 2] };
+                let cut =
+                    |i: u32| if i.is_multiple_of(2) { vec![i, i + 2, i + 1] } else { vec![i, i + 1, i + 2] };
                 shapes::pool(points, (0..6).map(cut).collect())
             }
             Self::Wheel => wheel(5, 5),

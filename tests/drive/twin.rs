@@ -56,6 +56,8 @@ pub(crate) struct After {
     /// Corners that hold what another held before; all that were there before and are not mixed keep theirs.
     pub(crate) corners: Vec<((F, V), (FaceKey, VertexKey))>,
     pub(crate) mixed_corners: BTreeSet<(F, V)>,
+    /// Mixed corners that hold the mean of two.
+    pub(crate) means: Vec<((F, V), [FaceKey; 2])>,
     pub(crate) mixed_vertices: BTreeSet<V>,
     pub(crate) mixed_edges: BTreeSet<E>,
     pub(crate) mixed_faces: BTreeSet<F>,
@@ -194,6 +196,7 @@ impl After {
             change,
             corners: Vec::new(),
             mixed_corners: BTreeSet::new(),
+            means: Vec::new(),
             mixed_vertices: BTreeSet::new(),
             mixed_edges: BTreeSet::new(),
             mixed_faces: BTreeSet::new(),
@@ -442,6 +445,7 @@ fn after(mesh: &Mesh, before: &Plain, op: &Op) -> Option<Vec<After>> {
             let mut after = After::new(p, Some(SAME));
             after.corners = from_g[1..].iter().map(|&v| ((f, v), (old_face(g), v.key(&[])))).collect();
             after.mixed_corners = [(f, u), (f, w)].into();
+            after.means = [u, w].map(|v| ((f, v), [old_face(f), old_face(g)])).to_vec();
             after.mixed_faces = [f].into();
             vec![after]
         }
@@ -578,6 +582,10 @@ fn dissolve(before: &Plain, v: V) -> Option<Vec<After>> {
             let mut state = After::new(p, Some(SAME));
             state.mixed_faces.insert(keeps);
             state.mixed_corners = rim.iter().filter(|&&n| twice(n)).map(|&n| (keeps, n)).collect();
+            for &n in rim.iter().filter(|&&n| twice(n)) {
+                let both: Vec<FaceKey> = corners.iter().filter(|c| c.0 == n).map(|c| old_face(c.1)).collect();
+                state.means.extend(both.try_into().map(|both: [FaceKey; 2]| ((keeps, n), both)));
+            }
             let whole = corners.iter().filter(|c| !twice(c.0));
             state.corners = whole.map(|&(n, f)| ((keeps, n), (old_face(f), n.key(&[])))).collect();
             states.push(state);

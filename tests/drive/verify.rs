@@ -210,9 +210,7 @@ impl World {
         equal("born vertices", &new.0 - &old.0, set(done.vertices.iter().copied()))?;
         equal("born edges", &new.1 - &old.1, set(done.edges.iter().copied()))?;
         equal("born faces", &new.2 - &old.2, set(done.faces.iter().copied()))?;
-        for repeated in [done.dead_edges.len() - set(done.dead_edges.iter().copied()).len()] {
-            equal("repeats", repeated, 0)?;
-        }
+        equal("edges named once", set(done.dead_edges.iter().copied()).len(), done.dead_edges.len())?;
         let verdicts: Vec<Verdict> = expected.iter().map(|a| self.matches(before, a, done)).collect();
         if !verdicts.iter().any(Result::is_ok) {
             return Err(verdicts.into_iter().filter_map(Result::err).collect::<Vec<_>>().join("; or "));
@@ -297,6 +295,13 @@ impl World {
                 equal("uv", (to, is), (to, was))?;
             }
         }
+        for &((f, v), both) in &after.means {
+            let v = v.key(&done.vertices);
+            let mean: DVec2 = both.map(|f| *before.value(data.uv, old[&(f, v)])).iter().sum::<DVec2>() * 0.5;
+            let is = *mesh.value(data.uv, new[&(f.key(&done.faces), v)]);
+            equal("mean uv", (is - mean).length() <= 1e-12 * (1.0 + mean.length()), true)
+                .map_err(|e| format!("{e}: {is} for {mean} at {v:?}"))?;
+        }
         for h in mesh.halfedges().filter(|&h| !mesh.is_boundary(h)) {
             equal("finite uv", mesh.value(data.uv, h).is_finite(), true)?;
         }
@@ -334,7 +339,7 @@ impl World {
             equal("faces told", (&new.2 - &old.2, &old.2 - &new.2), (set(born.2), set(died.2)))?;
         }
         record.lineage.extend(changes);
-        if i % 5 == 0 {
+        if i.is_multiple_of(5) {
             record.stops.push((record.lineage.changes().len(), self.mesh.numbering()));
         }
         Ok(())
