@@ -50,7 +50,7 @@ fn raycast_lists_hits_in_the_files_numbering() {
     let (_, first) = json_of(&dir, &[&ray[..], &["--first"]].concat());
     assert_eq!(first["hits"], json!([hits[0]]));
     let text = String::from_utf8(run(&dir, &ray).stdout).expect("text");
-    assert!(text.starts_with("2 hits\nt 1: enters at [0, 0.25, 0.5], face 6\n"), "{text}");
+    assert!(text.starts_with("2 hits\nt 1: enters at (0, 0.25, 0.5), face 6\n"), "{text}");
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn closest_finds_each_kind_of_element() {
     let inside = ["closest", "cube.obj", "--point", "0.5,0.5,0.875", "--to", "surface"];
     assert_eq!(json_of(&dir, &inside).1["signed_distance"], json!(-0.125));
     let text = String::from_utf8(run(&dir, &inside).stdout).expect("text");
-    assert_eq!(text, "face 2 at [0.5, 0.5, 1], distance 0.125\n");
+    assert_eq!(text, "face 2 at (0.5, 0.5, 1), distance 0.125\n");
     let far = [&inside[..], &["--max-distance", "0.1"]].concat();
     let (code, answer) = json_of(&dir, &far);
     assert_eq!((code, &answer["element"]), (1, &Value::Null));
