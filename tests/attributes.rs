@@ -395,3 +395,38 @@ fn a_mesh_carries_every_attribute_and_gives_it_back() {
     reversed.reverse();
     assert_eq!(reversed.to_indexed(), pool.reversed());
 }
+
+#[test]
+fn textures_groups_and_colours_go_from_file_to_file_through_edits() {
+    // Two quads with a seam between them, in two groups, colours at the vertices.
+    let text = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 2 0 0 0 0 1\nv 0 1 0 1 0 0\nv 1 1 0 0 1 0\nv 2 1 0 0 0 1\n\
+        vt 0 0\nvt 0.25 0\nvt 0.25 0.25\nvt 0 0.25\nvt 0.5 0.5\nvt 1 0.5\nvt 1 1\nvt 0.5 1\n\
+        g left\nusemtl red\nf 1/1 2/2 5/3 4/4\ng right\nusemtl blue\nf 2/5 3/6 6/7 5/8\n";
+    let loaded = io::read_obj(text.as_bytes(), &Limits::default()).expect("readable");
+    let mut mesh = clean(&loaded.soup, CleanOptions::default()).expect("never refused").value;
+    let seam = mesh.edges().find(|&e| mesh.is_uv_seam(e)).expect("a seam");
+    let split = mesh.split_edge(seam, dvec3(1.0, 0.5, 0.0)).expect("always");
+    let right = mesh.faces().nth(1).expect("two faces");
+    let middle = mesh.poke_face(right, dvec3(1.5, 0.5, 0.0)).expect("always").vertex;
+    let mut file = Vec::new();
+    io::write(&mesh.to_indexed().into(), Format::Obj, Encoding::Binary, &mut file).expect("writable");
+    let again = io::read_obj(file.as_slice(), &Limits::default()).expect("readable");
+    let again = clean(&again.soup, CleanOptions::default()).expect("never refused").value;
+    assert_eq!(again.to_indexed(), mesh.to_indexed());
+    // A new vertex on the seam has a place on either side, that in the middle of the right quad one; all are linear.
+    let number = |v| mesh.vertices().position(|w| w == v).expect("a vertex");
+    let uvs = |v| {
+        let v = again.vertices().nth(number(v)).expect("a vertex");
+        let mut uvs: Vec<[f64; 2]> =
+            again.outgoing(v).filter_map(|h| again.uv(h)).map(|uv| uv.to_array()).collect();
+        uvs.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+        uvs.dedup();
+        uvs
+    };
+    assert_eq!(uvs(split.vertex), [[0.25, 0.125], [0.5, 0.75]]);
+    let [[u, v]] = uvs(middle)[..] else { panic!("one place") };
+    assert!((u - 0.75).abs() < 1e-14 && (v - 0.75).abs() < 1e-14);
+    let groups: Vec<&str> = again.faces().filter_map(|f| Some(again.group(f)?.name.as_str())).collect();
+    assert_eq!(groups, [&["left"][..], &["right"; 5]].concat());
+    assert!(again.carried_attributes().contains(&Attribute::VertexColors));
+}

@@ -4,6 +4,7 @@ use super::{Few, Slots};
 use crate::column::{Event, Kind};
 use crate::matching::NONE;
 use crate::{EdgeKey, FaceKey, Mesh, VertexKey};
+use smallvec::SmallVec;
 
 /// Why a vertex was not dissolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -166,10 +167,11 @@ impl Mesh {
         let faces: Slots = spokes.iter().map(|&h| self.face[h as usize]).filter(|&f| f != NONE).collect();
         let f = faces[0];
         if !self.columns.none_on(Kind::Face) {
-            let weights: Vec<f64> = faces.iter().map(|&f| self.face_weight(f)).collect();
+            let weights: SmallVec<[f64; 12]> = faces.iter().map(|&f| self.face_weight(f)).collect();
             let sum: f64 = weights.iter().sum();
             let share = |w: f64| if sum.is_finite() { w / sum } else { 1.0 / weights.len() as f64 };
-            let sources: Vec<(u32, f64)> = faces.iter().zip(&weights).map(|(&f, &w)| (f, share(w))).collect();
+            let sources: SmallVec<[(u32, f64); 12]> =
+                faces.iter().zip(&weights).map(|(&f, &w)| (f, share(w))).collect();
             self.mix(Kind::Face, Event::Merge, f, &sources);
         }
         // Where two faces met at a spoke, the corner of the one counter-clockwise ends the rim's part before it; the

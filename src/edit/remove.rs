@@ -3,6 +3,7 @@
 use super::{Few, Slots};
 use crate::matching::NONE;
 use crate::{EdgeKey, FaceKey, Mesh, VertexKey};
+use smallvec::SmallVec;
 
 /// Why a face was not removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -95,8 +96,18 @@ impl Mesh {
         }
     }
 
-    /// Removes an edge with the one or two faces beside it. Vertices stay. O(valences of their corners). To merge the two
-    /// faces instead, [`join_faces`](Self::join_faces).
+    /// Removes an edge with the one or two faces beside it. To merge the two faces instead,
+    /// [`join_faces`](Self::join_faces).
+    ///
+    /// ```text
+    ///   ●───●───●───●        ●───●   ●───●
+    ///   │ ╱ │   │ ╲ │        │ ╱       ╲ │
+    ///   ●   │ e │   ●   →    ●           ●     Vertices stay, and edges that have another face.
+    ///   │ ╲ │   │ ╱ │        │ ╲       ╱ │
+    ///   ●───●───●───●        ●───●   ●───●
+    /// ```
+    ///
+    /// O(valences of the faces' corners).
     ///
     /// # Errors
     /// [`RemoveEdgeError`]; nothing has changed then.
@@ -129,8 +140,17 @@ impl Mesh {
         }
     }
 
-    /// Removes a vertex with all faces around it. Other vertices stay. O(valences of the faces' corners). To merge the
-    /// faces instead, [`dissolve_vertex`](Self::dissolve_vertex).
+    /// Removes a vertex with all faces around it. To merge the faces instead, [`dissolve_vertex`](Self::dissolve_vertex).
+    ///
+    /// ```text
+    ///   ●───●───●        ●───●───●
+    ///   │ ╲ │ ╱ │        │       │
+    ///   ●── v ──●   →    ●       ●     Other vertices stay; one without a face left is isolated.
+    ///   │ ╱ │ ╲ │        │       │
+    ///   ●───●───●        ●───●───●
+    /// ```
+    ///
+    /// O(valences of the faces' corners).
     ///
     /// # Errors
     /// [`RemoveVertexError`]; nothing has changed then.
@@ -208,7 +228,7 @@ impl Mesh {
     fn take_faces(&mut self, faces: &[u32]) -> Removed {
         let corners = self.corners_of(faces);
         // The edges around each corner, in order: links are written while they are still needed.
-        let fans: Vec<Slots> = corners.iter().map(|&v| self.spokes(v)).collect();
+        let fans: SmallVec<[Slots; 4]> = corners.iter().map(|&v| self.spokes(v)).collect();
         let mut halfedges = Slots::new();
         for &f in faces {
             halfedges.extend(self.loop_slots(self.face_halfedge[f as usize]));

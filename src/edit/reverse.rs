@@ -34,6 +34,13 @@ impl Mesh {
     /// Flips one component: reverses the winding of every face that can be reached from `f` across edges, and negates
     /// the normals that it carries. As with [`reverse`](Self::reverse) all keys stay valid. O(its size).
     ///
+    /// ```text
+    ///       c                c
+    ///     ╱   ╲            ╱   ╲
+    ///   ↙   ↺   ↖    →   ↗   ↻   ↘
+    ///   a ──→── b        a ──←── b
+    /// ```
+    ///
     /// # Errors
     /// [`MissingFace`] on a dead key.
     ///

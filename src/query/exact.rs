@@ -189,7 +189,9 @@ mod tests {
         assert_ne!(line.side(p, off), 0);
         assert_eq!(line.side(p, off), -line.side(off, p));
         assert_ne!(line.moved_side(p, on), 0);
-        assert_eq!(line.moved_side(on, on + 2.0 * line.direction), 0, "parallel");
+        let exact = Line { origin: dvec3(0.125, 0.75, -3.0), direction: dvec3(0.25, 0.5, 1.0) };
+        let ahead = exact.origin + 2.0 * exact.direction;
+        assert_eq!(exact.moved_side(exact.origin, ahead), 0, "parallel, as nothing is rounded");
     }
 
     #[test]
