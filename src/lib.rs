@@ -64,6 +64,7 @@ pub use edit::{
 };
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
+pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
 pub use glam;
 pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};

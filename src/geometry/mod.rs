@@ -2,6 +2,7 @@
 
 pub(crate) mod measure;
 pub(crate) mod normals;
+pub(crate) mod reduce;
 pub(crate) mod triangulate;
 
 use glam::DVec3;
