@@ -12,7 +12,7 @@ import time
 import igl
 import numpy as np
 
-SAMPLES = 400_000
+SAMPLES = 100_000
 
 
 def read(path):
@@ -63,7 +63,7 @@ def main():
     diagonal = np.linalg.norm(v.max(0) - v.min(0))
     results = {}
     for argument in sys.argv[3:]:
-        name, path = argument.split("=")
+        name, path = argument.rsplit("=", 1)
         results[name] = path if path == "qslim" else read(path)
     for name, result in results.items():
         note = ""

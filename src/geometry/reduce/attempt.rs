@@ -15,6 +15,8 @@ pub(super) struct Guards {
     pub(super) shape: f64,
     /// The greatest error, in local units.
     pub(super) error: f64,
+    /// How much the planes along feature edges count.
+    pub(super) line_weight: f64,
 }
 
 /// The edges around an end, clockwise, the collapsing one first.
@@ -109,8 +111,13 @@ fn is_thin(cross_squared: f64, sides_squared: f64, shape: f64) -> bool {
 
 impl Copy {
     /// Collapses an edge, or says why not.
-    pub(super) fn attempt(&mut self, e: u32, guards: Guards, scratch: &mut Scratch) -> Result<Done, Refusal> {
-        let mut candidate = self.candidate(e)?;
+    pub(super) fn attempt(
+        &mut self,
+        e: u32,
+        mut candidate: Candidate,
+        guards: Guards,
+        scratch: &mut Scratch,
+    ) -> Result<Done, Refusal> {
         let halfedge = match candidate.way {
             Way::ToOrigin => 2 * e + 1,
             Way::Anywhere | Way::ToTarget => 2 * e,
@@ -130,11 +137,16 @@ impl Copy {
             stays.check(self, candidate.place, guards)?;
         }
         goes.check(self, candidate.place, guards)?;
-        let error = candidate.error();
+        let ends = [2 * e, 2 * e + 1].map(|h| self.vertex(self.origin(h)));
+        let memory = candidate.memory(ends[0], ends[1]);
+        let error = candidate.error(&memory);
         if error > guards.error {
             return Err(Refusal::ErrorBound);
         }
-        self.join(halfedge, &candidate, &scratch.goes);
+        let first = self.join(halfedge, &candidate, &scratch.goes);
+        let vertex = self.origin(first) as usize;
+        self.vertices[vertex].memory = memory;
+        self.look_again(first, guards.line_weight);
         Ok(Done { halfedge, error })
     }
 
@@ -204,14 +216,41 @@ impl Copy {
         if common == sides { Ok(()) } else { Err(Refusal::Topology) }
     }
 
-    /// Merges the origin of `h` into its target, as [`Mesh::collapse`](crate::Mesh::collapse) does.
-    fn join(&mut self, h: u32, candidate: &Candidate, goes: &Ring) {
+    /// Sums up the planes anew around a vertex that has changed and its neighbours, those of many edges aside.
+    fn look_again(&mut self, first: u32, line_weight: f64) {
+        if self.vertex(self.origin(first)).valence > HEAVY {
+            return;
+        }
+        self.sum_again(first, line_weight);
+        let mut h = first;
+        loop {
+            self.sum_again(h ^ 1, line_weight);
+            h = self.next(h ^ 1);
+            if h == first {
+                return;
+            }
+        }
+    }
+
+    fn sum_again(&mut self, first: u32, line_weight: f64) {
+        let v = self.origin(first) as usize;
+        if self.vertices[v].valence <= HEAVY {
+            let (faces, lines) = self.planes_around(first, line_weight);
+            self.vertices[v].fan = faces + lines;
+        }
+    }
+
+    /// Merges the origin of `h` into its target, as [`Mesh::collapse`](crate::Mesh::collapse) does; returns a half-edge
+    /// that starts there.
+    fn join(&mut self, h: u32, candidate: &Candidate, goes: &Ring) -> u32 {
         let t = h ^ 1;
         let (a, b) = (self.origin(h), self.origin(t));
         for &spoke in &goes.spokes {
             self.set_origin(spoke, b);
         }
         let before = self.removed;
+        // One of them is closed, and what stays there starts or ends at the target.
+        let mut left = h;
         for (h, leaves) in [(h, true), (t, false)] {
             let (n, p) = (self.next(h), self.prev(h));
             if self.is_open(h) {
@@ -221,6 +260,7 @@ impl Copy {
                 let apex = self.origin(p) as usize;
                 self.vertices[apex].valence -= 1;
                 self.replace(gone ^ 1, stays);
+                left = if leaves { stays } else { stays ^ 1 };
                 self.removed += 1;
             }
         }
@@ -234,7 +274,7 @@ impl Copy {
             vertex.position = candidate.middle + candidate.place;
             vertex.is_moved = true;
         }
-        vertex.quadric = candidate.quadric.about(candidate.place);
+        left
     }
 }
 

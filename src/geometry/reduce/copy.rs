@@ -1,7 +1,7 @@
 //! The private copy that is reduced: triangles alone, in an order in which neighbours lie together in memory.
 
 use super::features::Hold;
-use super::quadric::Quadric;
+use super::quadric::{Planes, Quadric};
 use super::queue::PARKED;
 use crate::Mesh;
 use crate::geometry::measure::Aabb;
@@ -9,13 +9,15 @@ use crate::geometry::unit_scale;
 use crate::matching::NONE;
 use glam::DVec3;
 
-/// A vertex of the copy: two cache lines, fetched together.
+/// A vertex of the copy: three cache lines.
 #[derive(Clone, Copy, Default)]
-#[repr(align(128))]
+#[repr(align(64))]
 pub(super) struct Vertex {
     pub(super) position: DVec3,
-    /// About the position.
-    pub(super) quadric: Quadric,
+    /// The planes of its faces and of its feature edges as they are now: what a collapse costs.
+    pub(super) fan: Planes,
+    /// The planes of all faces that ever went into it, about the position: the error that is told.
+    pub(super) memory: Quadric,
     /// The vertex it went into, once it is dead.
     pub(super) into: u32,
     /// The number of edges.
@@ -275,7 +277,7 @@ mod tests {
 
     #[test]
     fn records_fill_whole_cache_lines() {
-        assert_eq!((size_of::<Vertex>(), size_of::<Edge>()), (128, 32));
+        assert_eq!((size_of::<Vertex>(), size_of::<Edge>()), (192, 32));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::ReduceOptions;
 use super::copy::Copy;
-use super::quadric::Quadric;
+use super::quadric::Planes;
 use crate::column::Kind;
 use crate::{FeatureOptions, Mesh};
 
@@ -54,33 +54,49 @@ impl Copy {
         }
     }
 
-    /// Gives every vertex the planes of its faces, by area, and those that stand on its feature edges.
-    pub(super) fn sum_quadrics(&mut self, line_weight: f64) {
+    /// Sums up the planes at every vertex.
+    pub(super) fn sum_planes(&mut self, line_weight: f64) {
+        let mut first = vec![u32::MAX; self.vertices.len()];
         for h in 0..2 * self.edges.len() as u32 {
-            if self.is_open(h) {
-                continue;
-            }
-            let (n, p) = (self.next(h), self.prev(h));
-            let corners = [h, n, p].map(|h| self.origin(h));
-            let [a, b, c] = corners.map(|v| self.vertex(v).position);
-            let double_area = (b - a).cross(c - a);
-            let length = double_area.length();
-            if length > 0.0 && h < n && h < p {
-                self.add(&corners, Quadric::plane(double_area / length, 0.5 * length));
-            }
-            if self.edges[h as usize >> 1].is_feature && length > 0.0 {
-                // Upright on the face, through the edge.
-                let along = b - a;
-                let upright = along.cross(double_area / length);
-                self.add(&corners[..2], Quadric::plane(upright, line_weight));
-            }
+            first[self.origin(h) as usize] = h;
+        }
+        for (v, h) in first.into_iter().enumerate() {
+            let (faces, lines) = self.planes_around(h, line_weight);
+            let vertex = &mut self.vertices[v];
+            vertex.fan = faces + lines;
+            vertex.memory = faces.into();
         }
     }
 
-    fn add(&mut self, vertices: &[u32], plane: Quadric) {
-        for &v in vertices {
-            let vertex = &mut self.vertices[v as usize];
-            vertex.quadric = vertex.quadric + plane;
+    /// The planes of the faces around the origin of a half-edge, by area, and those that stand upright on these faces along
+    /// feature edges.
+    pub(super) fn planes_around(&self, first: u32, line_weight: f64) -> (Planes, Planes) {
+        let (mut faces, mut lines) = (Planes::default(), Planes::default());
+        let at = self.vertex(self.origin(first)).position;
+        let end = |h: u32| self.vertex(self.origin(h ^ 1)).position - at;
+        let mut h = first;
+        let mut along = end(h);
+        loop {
+            // The face to the right of this spoke lies between it and the next.
+            let after = self.next(h ^ 1);
+            let next_along = end(after);
+            if !self.is_open(h ^ 1) {
+                let double_area = next_along.cross(along);
+                let length = double_area.length();
+                if length > 0.0 {
+                    let normal = double_area / length;
+                    faces = faces + Planes::one(normal, 0.5 * length);
+                    for (h, along) in [(h, along), (after, next_along)] {
+                        if self.edges[h as usize >> 1].is_feature {
+                            lines = lines + Planes::one(along.cross(normal), line_weight);
+                        }
+                    }
+                }
+            }
+            (h, along) = (after, next_along);
+            if h == first {
+                return (faces, lines);
+            }
         }
     }
 }

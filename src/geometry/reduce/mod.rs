@@ -1,13 +1,11 @@
 //! Reduction to fewer faces by edge collapse.
 //!
 //! The work is done on a compact copy of the mesh ([`copy`]) whose edges wait in a [`queue`] by what their collapse costs
-//! ([`place`], [`quadric`]); [`attempt`] does or refuses one, [`run`] is the loop, [`fit`] a last improvement, and
-//! [`write`] brings the result back, so that what is left keeps its keys.
+//! ([`place`], [`quadric`]); [`attempt`] does or refuses one, [`run`] is the loop, and [`write`] brings the result back, so that what is left keeps its keys.
 
 mod attempt;
 mod copy;
 mod features;
-mod fit;
 mod place;
 mod quadric;
 mod queue;
@@ -64,8 +62,6 @@ pub struct ReduceOptions<'a> {
     pub max_turn: f64,
     /// No collapse leaves a triangle whose shape is below this, unless it was so before: 1 is equilateral, 0 has no area.
     pub min_shape: f64,
-    /// Whether vertices that are left are fitted to those that are gone.
-    pub fit: bool,
     /// Progress and cancelling.
     pub control: Control<'a>,
 }
@@ -83,7 +79,6 @@ impl Default for ReduceOptions<'_> {
             locked_edges: None,
             max_turn: 78f64.to_radians(),
             min_shape: 1e-3,
-            fit: true,
             control: Control::none(),
         }
     }
@@ -101,7 +96,6 @@ impl fmt::Debug for ReduceOptions<'_> {
             .field("locked_edges", &self.locked_edges.is_some())
             .field("max_turn", &self.max_turn)
             .field("min_shape", &self.min_shape)
-            .field("fit", &self.fit)
             .field("control", &self.control)
             .finish()
     }
@@ -255,10 +249,10 @@ impl ReduceOptions<'_> {
 impl Mesh {
     /// Reduces the number of faces by collapsing edges, the one with the least error first.
     ///
-    /// The error is that of quadrics (Garland and Heckbert, "Surface simplification using quadric error metrics", 1997):
-    /// the squared distances to the planes of all faces that went into a vertex, by their areas. Vertices are placed
-    /// where it is least and the volume stays the same (Lindstrom and Turk, 1998), and are fitted to the vertices that
-    /// are gone in the end.
+    /// What a collapse costs is the squared distances to the planes of the faces around the edge, by their areas (Garland
+    /// and Heckbert, "Surface simplification using quadric error metrics", 1997), as they are by then and not as they
+    /// were (Lindstrom and Turk, "Evaluation of memoryless simplification", 1999); vertices are placed where that is
+    /// least and the volume stays the same. The error that is bounded and told is measured to the original faces.
     ///
     /// Every collapse is one that [`check_collapse`](Self::check_collapse) allows: components, genus and boundary loops
     /// stay, a tetrahedron keeps its four faces. None turns a face over; boundaries, seams, borders of groups and locked
@@ -327,23 +321,20 @@ impl Mesh {
     fn reduce_triangles(&mut self, goal: &Goal, options: &mut ReduceOptions<'_>) -> Result<Told, ReduceError> {
         let mut copy = Copy::of(self);
         copy.mark(self, options);
-        copy.sum_quadrics(options.line_weight);
+        copy.sum_planes(options.line_weight);
         options.control.report("collapse", 0.1)?;
         let guards = Guards {
             turn: options.max_turn.cos().powi(2),
             shape: options.min_shape,
             error: goal.error / copy.frame.length(1.0),
+            line_weight: options.line_weight,
         };
         let is_watched = !self.columns.is_empty() || self.undo.is_some() || self.changes.is_some();
         let mut run = Run::new(guards, is_watched);
         let is_met = run.reduce(&mut copy, self.face_count() - goal.faces, &mut options.control)?;
         let Run { account, log, .. } = run;
         let merged = copy.merged(self);
-        if options.fit && account.collapses > 0 {
-            options.control.report("fit", 0.85)?;
-            copy.fit(self);
-        }
-        options.control.report("write", 0.95)?;
+        options.control.report("write", 0.9)?;
         match log {
             Some(log) => self.replay(&copy, log),
             None => self.take_over(&copy),

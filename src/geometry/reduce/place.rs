@@ -33,8 +33,6 @@ pub(super) struct Candidate {
     /// The middle of the edge, and the vector from there to the target.
     pub(super) middle: DVec3,
     pub(super) half: DVec3,
-    /// The planes of both ends, about the middle.
-    pub(super) quadric: Quadric,
     /// From the middle.
     pub(super) place: DVec3,
     /// What moves the vertex at the least cost, where it is free to go.
@@ -44,10 +42,14 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// The root of the mean squared distance of the place to all planes.
-    pub(super) fn error(&self) -> f64 {
-        let weight = self.quadric.weight();
-        let mean = self.quadric.at(self.place) / weight - NOISE * 4.0 * self.half.length_squared();
+    /// The planes that the new vertex would stand for, about its place.
+    pub(super) fn memory(&self, a: &Vertex, b: &Vertex) -> Quadric {
+        a.memory.about(self.place + self.half) + b.memory.about(self.place - self.half)
+    }
+
+    /// The root of the mean squared distance of the place to these planes.
+    pub(super) fn error(&self, memory: &Quadric) -> f64 {
+        let mean = memory.at(DVec3::ZERO) / memory.weight() - NOISE * 4.0 * self.half.length_squared();
         if mean > 0.0 { mean.sqrt() } else { 0.0 }
     }
 }
@@ -82,7 +84,7 @@ impl Copy {
         let way = way(a, b, self.edges[e as usize].is_feature)?;
         let half = (b.position - a.position) * 0.5;
         let middle = a.position + half;
-        let quadric = a.quadric.about(half) + b.quadric.about(-half);
+        let quadric = a.fan.about(half) + b.fan.about(-half);
         let (mut place, mut factors) = (DVec3::ZERO, None);
         match way {
             Way::ToTarget => place = half,
@@ -95,8 +97,10 @@ impl Copy {
                 }
             }
         }
-        let length_cost = LENGTH_COST * quadric.weight() * 4.0 * half.length_squared();
-        let cost = quadric.at(place).max(0.0) + length_cost;
-        Ok(Candidate { way, middle, half, quadric, place, factors, cost })
+        let weight = quadric.weight();
+        let length_cost = LENGTH_COST * weight * 4.0 * half.length_squared();
+        // Times the area: so the distance itself, not its square, is spread evenly over the surface.
+        let cost = (quadric.at(place).max(0.0) + length_cost) * weight;
+        Ok(Candidate { way, middle, half, place, factors, cost })
     }
 }

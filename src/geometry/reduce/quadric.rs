@@ -6,24 +6,29 @@
 use glam::DVec3;
 use std::ops::Add;
 
+/// The sum of `weight * normal normalᵀ` over planes: xx xy xz yy yz zz.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Planes([f64; 6]);
+
 /// The sum of `weight * distance^2` over planes, as a function of `x`: `xᵀAx + 2b·x + c`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Quadric {
-    /// xx xy xz yy yz zz
-    a: [f64; 6],
+    a: Planes,
     b: DVec3,
     c: f64,
 }
 
-impl Quadric {
-    /// One plane through the point the quadric is about; the normal need not have unit length, its square counts.
-    pub(super) fn plane(normal: DVec3, weight: f64) -> Self {
+impl Planes {
+    /// One plane; the normal need not have unit length, its square counts.
+    #[inline]
+    pub(super) fn one(normal: DVec3, weight: f64) -> Self {
         let (n, m) = (normal, normal * weight);
-        Self { a: [m.x * n.x, m.x * n.y, m.x * n.z, m.y * n.y, m.y * n.z, m.z * n.z], b: DVec3::ZERO, c: 0.0 }
+        Self([m.x * n.x, m.x * n.y, m.x * n.z, m.y * n.y, m.y * n.z, m.z * n.z])
     }
 
+    #[inline]
     fn times(&self, x: DVec3) -> DVec3 {
-        let [xx, xy, xz, yy, yz, zz] = self.a;
+        let [xx, xy, xz, yy, yz, zz] = self.0;
         DVec3::new(
             xx * x.x + xy * x.y + xz * x.z,
             xy * x.x + yy * x.y + yz * x.z,
@@ -31,30 +36,57 @@ impl Quadric {
         )
     }
 
+    /// Where all of them pass through one point, as seen from the point at `by`.
+    #[inline]
+    pub(super) fn about(&self, by: DVec3) -> Quadric {
+        let b = self.times(by);
+        Quadric { a: *self, b, c: b.dot(by) }
+    }
+}
+
+impl Quadric {
     /// The same about the point at `by`.
     #[inline]
     pub(super) fn about(&self, by: DVec3) -> Self {
-        let turned = self.times(by);
+        let turned = self.a.times(by);
         Self { a: self.a, b: self.b + turned, c: self.c + (self.b + self.b + turned).dot(by) }
     }
 
     #[inline]
     pub(super) fn at(&self, x: DVec3) -> f64 {
-        (self.b + self.b + self.times(x)).dot(x) + self.c
+        (self.b + self.b + self.a.times(x)).dot(x) + self.c
     }
 
     /// The sum of the weights.
     #[inline]
     pub(super) fn weight(&self) -> f64 {
-        self.a[0] + self.a[3] + self.a[5]
+        self.a.0[0] + self.a.0[3] + self.a.0[5]
     }
 
     /// Where it is least, drawn towards the point it is about by `pull` times its weight, so that there is one such place:
     /// on a plane or along a crease the one nearest to that point.
     #[inline]
     pub(super) fn least(&self, pull: f64) -> Option<(DVec3, Factors)> {
-        let factors = Factors::of(&self.a, pull * self.weight())?;
+        let factors = Factors::of(&self.a.0, pull * self.weight())?;
         Some((factors.solve(-self.b), factors))
+    }
+}
+
+impl From<Planes> for Quadric {
+    /// About the point through which all of them pass.
+    fn from(a: Planes) -> Self {
+        Self { a, b: DVec3::ZERO, c: 0.0 }
+    }
+}
+
+impl Add for Planes {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let mut a = self.0;
+        a.iter_mut().zip(other.0).for_each(|(a, b)| *a += b);
+        Self(a)
     }
 }
 
@@ -63,9 +95,7 @@ impl Add for Quadric {
 
     #[inline]
     fn add(self, other: Self) -> Self {
-        let mut a = self.a;
-        a.iter_mut().zip(other.a).for_each(|(a, b)| *a += b);
-        Self { a, b: self.b + other.b, c: self.c + other.c }
+        Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
     }
 }
 
@@ -114,25 +144,19 @@ mod tests {
     fn three_planes_meet_where_their_sum_is_least() {
         let corner = dvec3(0.25, -0.5, 0.125);
         let planes = [dvec3(1., 1., 0.), dvec3(0., 1., -1.), dvec3(2., 0., 1.)];
-        let sum = planes.iter().fold(Quadric::default(), |q, &n| q + Quadric::plane(n, 1.0)).about(-corner);
+        let sum = planes.iter().fold(Planes::default(), |q, &n| q + Planes::one(n, 1.0)).about(-corner);
         let (least, _) = sum.least(1e-14).expect("one place");
         assert!((least - corner).length() < 1e-12, "{least}");
         assert!(sum.at(corner).abs() < 1e-15);
-        let far = sum.planes_naively(&planes, corner, DVec3::ONE);
+        let far: f64 = planes.iter().map(|n| n.dot(DVec3::ONE - corner).powi(2)).sum();
         assert!((sum.at(DVec3::ONE) - far).abs() < 1e-12);
     }
 
     #[test]
     fn on_a_plane_the_nearest_place_is_taken() {
-        let q = Quadric::plane(DVec3::Z, 3.0).about(dvec3(5., 7., -1.));
+        let q = Planes::one(DVec3::Z, 3.0).about(dvec3(5., 7., -1.));
         let (least, _) = q.least(1e-10).expect("one place");
         assert!((least - DVec3::Z).length() < 1e-9, "{least}");
         assert_eq!(q.weight(), 3.0);
-    }
-
-    impl Quadric {
-        fn planes_naively(&self, normals: &[DVec3], through: DVec3, x: DVec3) -> f64 {
-            normals.iter().map(|n| n.dot(x - through).powi(2)).sum()
-        }
     }
 }

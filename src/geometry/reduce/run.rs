@@ -76,9 +76,6 @@ impl Run {
     #[inline]
     fn put(&mut self, copy: &mut Copy, e: u32) {
         let bucket = match copy.candidate(e) {
-            Ok(candidate) if self.guards.error < f64::INFINITY && candidate.error() > self.guards.error => {
-                self.refuse(Refusal::ErrorBound)
-            }
             Ok(candidate) => self.queue.bucket(candidate.cost),
             Err(refusal) => self.refuse(refusal),
         };
@@ -119,8 +116,16 @@ impl Run {
             if copy.edges[e as usize].bucket != bucket {
                 continue;
             }
+            let candidate = match copy.candidate(e) {
+                // It has become dearer since: the neighbours' faces have moved.
+                Ok(candidate) if self.queue.bucket(candidate.cost) > bucket => {
+                    self.put(copy, e);
+                    continue;
+                }
+                other => other,
+            };
             copy.edges[e as usize].bucket = PARKED;
-            match copy.attempt(e, self.guards, &mut self.scratch) {
+            match candidate.and_then(|c| copy.attempt(e, c, self.guards, &mut self.scratch)) {
                 Err(refusal) => _ = self.refuse(refusal),
                 Ok(done) => {
                     self.account.collapses += 1;

@@ -46,15 +46,6 @@ impl Mesh {
             debug_assert_eq!(self.check_collapse(self.halfedge_key(halfedge), position), Ok(()));
             self.collapse_checked(halfedge, position);
         }
-        // The last fit moved vertices again.
-        for (vertex, &slot) in copy.vertices.iter().zip(&copy.vertex_slot) {
-            if vertex.into == NONE && vertex.is_moved {
-                let position = copy.frame.global(vertex.position);
-                if self.positions[slot as usize] != position {
-                    self.write_position(slot, position);
-                }
-            }
-        }
     }
 
     /// Takes the links over as they are: for a mesh without user data, checkpoints and listeners.
