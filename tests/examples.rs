@@ -4,6 +4,8 @@
 mod boundary_loops;
 #[path = "../examples/clean_import.rs"]
 mod clean_import;
+#[path = "../examples/level_of_detail.rs"]
+mod level_of_detail;
 #[path = "../examples/make_sample.rs"]
 mod make_sample;
 #[path = "../examples/one_ring.rs"]
@@ -58,4 +60,18 @@ fn clean_import_makes_the_broken_bracket_two_solids_and_tells_why() {
     {
         assert!(account.iter().any(|line| line.contains(kind)), "{kind}: {account:#?}");
     }
+}
+
+#[test]
+fn level_of_detail_gives_three_levels_that_lose_little() {
+    let levels = level_of_detail::run().expect("runs");
+    let faces: Vec<usize> = levels.iter().map(|l| l.mesh.face_count()).collect();
+    assert_eq!(faces, [4000, 1000, 250]);
+    for (level, bound) in levels.iter().zip([1e-3, 4e-3, 2e-2]) {
+        assert_eq!(level.stopped, meshwright::Stopped::Target);
+        assert!(level.error > 0.0 && level.error < bound, "{}", level.error);
+        assert!(level.volume.abs() < 0.02, "{}", level.volume);
+        assert_eq!(level.mesh.components().len(), 1);
+    }
+    assert!(levels.is_sorted_by(|a, b| a.error < b.error));
 }

@@ -78,7 +78,7 @@ impl Default for ReduceOptions<'_> {
             locked_vertices: None,
             locked_edges: None,
             max_turn: 78f64.to_radians(),
-            min_shape: 1e-3,
+            min_shape: 1e-4,
             control: Control::none(),
         }
     }
