@@ -17,7 +17,8 @@ pub(crate) struct Level {
 /// A knotted tube of `n` by `m` quads.
 fn knot(n: u32, m: u32) -> Result<IndexedMesh, Box<dyn Error>> {
     let turn = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
-    let center = |t: f64| dvec3(t.sin() + 2.0 * (2.0 * t).sin(), t.cos() - 2.0 * (2.0 * t).cos(), -(3.0 * t).sin());
+    let center =
+        |t: f64| dvec3(t.sin() + 2.0 * (2.0 * t).sin(), t.cos() - 2.0 * (2.0 * t).cos(), -(3.0 * t).sin());
     let point = |i: u32, j: u32| {
         let t = turn(i, n);
         let along = (center(t + 1e-4) - center(t - 1e-4)).normalize();
@@ -43,7 +44,8 @@ pub(crate) fn run() -> Result<Vec<Level>, Box<dyn Error>> {
     let volume = mesh.closed()?.volume();
     let mut levels = Vec::new();
     for faces in [4000, 1000, 250] {
-        let account = mesh.reduce(ReduceOptions { target: ReduceTarget::Faces(faces), ..Default::default() })?;
+        let account =
+            mesh.reduce(ReduceOptions { target: ReduceTarget::Faces(faces), ..Default::default() })?;
         levels.push(Level {
             stopped: account.stopped,
             error: account.max_error / size,

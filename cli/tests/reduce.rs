@@ -13,7 +13,11 @@ fn directory(test: &str) -> PathBuf {
 }
 
 fn run(directory: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meshwright")).current_dir(directory).args(args).output().expect("it runs")
+    Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        .current_dir(directory)
+        .args(args)
+        .output()
+        .expect("it runs")
 }
 
 fn json(directory: &Path, args: &[&str]) -> (i32, Value) {
@@ -52,7 +56,10 @@ fn reduce_meets_each_kind_of_target_and_says_how_it_ended() {
         assert!(faces <= 100 || flag == "--max-error", "{answer}");
         assert!(answer["max_error"].as_f64().expect("a number") > 0.0);
         let (_, facts) = json(&dir, &["inspect", "out.ply"]);
-        assert_eq!((&facts["faces"], &facts["boundary_loops"], &facts["manifold"]), (&faces.into(), &1.into(), &true.into()));
+        assert_eq!(
+            (&facts["faces"], &facts["boundary_loops"], &facts["manifold"]),
+            (&faces.into(), &1.into(), &true.into())
+        );
     }
 }
 
@@ -68,7 +75,14 @@ fn reduce_stops_at_a_tetrahedron_without_failing() {
 fn reduce_refuses_what_makes_no_sense_and_writes_nothing() {
     let dir = directory("reduce_refuses");
     fs::write(dir.join("a.obj"), TETRAHEDRON).expect("written");
-    for (flag, value) in [("--faces", "0"), ("--ratio", "0"), ("--ratio", "-1"), ("--ratio", "2"), ("--max-error", "-1"), ("--max-error", "NaN")] {
+    for (flag, value) in [
+        ("--faces", "0"),
+        ("--ratio", "0"),
+        ("--ratio", "-1"),
+        ("--ratio", "2"),
+        ("--max-error", "-1"),
+        ("--max-error", "NaN"),
+    ] {
         let (code, answer) = json(&dir, &["reduce", "a.obj", flag, value, "-o", "out.obj"]);
         assert_eq!((code, &answer["error"]["kind"]), (1, &"refused".into()), "{flag} {value}");
     }
@@ -93,9 +107,7 @@ fn collapse_merges_the_ends_at_the_middle() {
 fn collapse_refuses_with_the_reason() {
     let dir = directory("collapse_refuses");
     fs::write(dir.join("a.obj"), TETRAHEDRON).expect("written");
-    for (edge, reason) in
-        [("0,1", "same corners"), ("0,9", "no vertex 9"), ("2,2", "no edge")]
-    {
+    for (edge, reason) in [("0,1", "same corners"), ("0,9", "no vertex 9"), ("2,2", "no edge")] {
         let (code, answer) = json(&dir, &["collapse", "a.obj", "--edge", edge, "-o", "out.obj"]);
         let message = answer["error"]["message"].as_str().expect("a message");
         assert_eq!(code, 1);

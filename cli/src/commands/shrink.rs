@@ -19,7 +19,12 @@ pub(super) fn reduce(session: &mut Session, args: &Reduce) -> Result<Answer, Fai
     let account = session.timed(Phase::Run, || {
         progress::shown(|hook| {
             let sharp_angle = args.sharp.map(f64::to_radians);
-            mesh.reduce(ReduceOptions { target, sharp_angle, control: Control::new(hook), ..Default::default() })
+            mesh.reduce(ReduceOptions {
+                target,
+                sharp_angle,
+                control: Control::new(hook),
+                ..Default::default()
+            })
         })
     });
     let account = account.map_err(|error: ReduceError| Failure::Refused {

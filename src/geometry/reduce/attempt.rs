@@ -85,7 +85,10 @@ impl Ring {
             let (before, after) = (self.areas[i], u.cross(v));
             let (dot, was, is) = (after.dot(before), before.length_squared(), after.length_squared());
             // What had no area cannot fold.
-            if was > 0.0 && (dot <= 0.0 || dot * dot < guards.turn * was * is) && !copy.is_open(self.spokes[i] ^ 1) {
+            if was > 0.0
+                && (dot <= 0.0 || dot * dot < guards.turn * was * is)
+                && !copy.is_open(self.spokes[i] ^ 1)
+            {
                 return Err(Refusal::Flip);
             }
             let sides = u.length_squared() + v.length_squared();
@@ -235,8 +238,7 @@ impl Copy {
     fn sum_again(&mut self, first: u32, line_weight: f64) {
         let v = self.origin(first) as usize;
         if self.vertices[v].valence <= HEAVY {
-            let (faces, lines) = self.planes_around(first, line_weight);
-            self.vertices[v].fan = faces + lines;
+            self.vertices[v].fan = self.fan_around(first, line_weight);
         }
     }
 
@@ -283,7 +285,9 @@ impl Candidate {
     /// efficient polygonal simplification", 1998), if that is near.
     fn keep_volume(&mut self, copy: &Copy, goes: &Ring, stays: &Ring, from: DVec3, to: DVec3) {
         let Some(factors) = self.factors else { return };
-        let is_inside = |ring: &Ring| ring.spokes.first().is_some_and(|&h| copy.vertex(copy.origin(h)).hold == Hold::Free);
+        let is_inside = |ring: &Ring| {
+            ring.spokes.first().is_some_and(|&h| copy.vertex(copy.origin(h)).hold == Hold::Free)
+        };
         if !is_inside(goes) || !is_inside(stays) {
             return;
         }

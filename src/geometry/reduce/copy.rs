@@ -222,23 +222,12 @@ impl Copy {
         }
         h
     }
-
-    /// Live triangles by their half-edges, each from its lowest.
-    pub(super) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        (0..2 * self.edges.len() as u32).filter_map(|h| {
-            let (edge, side) = self.edge(h);
-            if edge.is_dead || edge.is_open[side] {
-                return None;
-            }
-            let (n, p) = (edge.next[side], edge.prev[side]);
-            (h < n && h < p).then_some([h, n, p])
-        })
-    }
 }
 
 /// Slots in the order in which their points lie along Morton's curve: what is near in space is near in the order.
 fn along_a_curve(points: impl Iterator<Item = (DVec3, u32)> + Clone) -> Vec<u32> {
-    let bounds = Aabb::around(points.clone().map(|p| p.0)).unwrap_or(Aabb { min: DVec3::ZERO, max: DVec3::ZERO });
+    let bounds =
+        Aabb::around(points.clone().map(|p| p.0)).unwrap_or(Aabb { min: DVec3::ZERO, max: DVec3::ZERO });
     let per_unit = 1023.0 / (bounds.max - bounds.min).max_element().max(f64::MIN_POSITIVE);
     let spread = |x: f64| {
         let mut bits = (x as u32).min(1023);
@@ -283,7 +272,8 @@ mod tests {
     #[test]
     fn a_frame_brings_any_points_to_about_one_and_back() {
         for (offset, size) in [(0.0, 1e-300), (1e6, 1.0), (0.0, 1e300), (-1e30, 1e20), (0.0, 0.0)] {
-            let points = [DVec3::splat(offset), DVec3::splat(offset + size), DVec3::new(offset, 0.0, -offset)];
+            let points =
+                [DVec3::splat(offset), DVec3::splat(offset + size), DVec3::new(offset, 0.0, -offset)];
             let frame = Frame::around(points.into_iter());
             for p in points {
                 let local = frame.local(p);

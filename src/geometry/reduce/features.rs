@@ -43,8 +43,11 @@ impl Copy {
             }
         }
         for (i, vertex) in self.vertices.iter_mut().enumerate() {
-            let is_locked =
-                || options.locked_vertices.is_some_and(|is_locked| is_locked(mesh.vertices.key(self.vertex_slot[i])));
+            let is_locked = || {
+                options
+                    .locked_vertices
+                    .is_some_and(|is_locked| is_locked(mesh.vertices.key(self.vertex_slot[i])))
+            };
             vertex.hold = match count[i] {
                 _ if locked[i] || is_locked() => Hold::Fixed,
                 0 => Hold::Free,
@@ -61,17 +64,25 @@ impl Copy {
             first[self.origin(h) as usize] = h;
         }
         for (v, h) in first.into_iter().enumerate() {
-            let (faces, lines) = self.planes_around(h, line_weight);
+            let fan = self.fan_around(h, line_weight);
+            let memory = self.planes_around(h, |area| area, 1.0).into();
             let vertex = &mut self.vertices[v];
-            vertex.fan = faces + lines;
-            vertex.memory = faces.into();
+            (vertex.fan, vertex.memory) = (fan, memory);
         }
     }
 
-    /// The planes of the faces around the origin of a half-edge, by area, and those that stand upright on these faces along
-    /// feature edges.
-    pub(super) fn planes_around(&self, first: u32, line_weight: f64) -> (Planes, Planes) {
-        let (mut faces, mut lines) = (Planes::default(), Planes::default());
+    /// The planes that a collapse at the origin of a half-edge is to keep to.
+    ///
+    /// The weight of a face is more than its area, and [`Copy::candidate`] adds to that: what counts is the mean distance,
+    /// not its square, and on smooth surfaces the one grows as the square root of the other. The exponents are measured.
+    pub(super) fn fan_around(&self, first: u32, line_weight: f64) -> Planes {
+        self.planes_around(first, |area| area * area.sqrt(), line_weight)
+    }
+
+    /// The planes of the faces around the origin of a half-edge, each with a weight by its area, and those that stand
+    /// upright on these faces along feature edges, by the square of the edge.
+    fn planes_around(&self, first: u32, weigh: impl Fn(f64) -> f64, line_weight: f64) -> Planes {
+        let mut planes = Planes::default();
         let at = self.vertex(self.origin(first)).position;
         let end = |h: u32| self.vertex(self.origin(h ^ 1)).position - at;
         let mut h = first;
@@ -85,17 +96,20 @@ impl Copy {
                 let length = double_area.length();
                 if length > 0.0 {
                     let normal = double_area / length;
-                    faces = faces + Planes::one(normal, 0.5 * length);
+                    planes = planes + Planes::one(normal, weigh(0.5 * length));
                     for (h, along) in [(h, along), (after, next_along)] {
                         if self.edges[h as usize >> 1].is_feature {
-                            lines = lines + Planes::one(along.cross(normal), line_weight);
+                            // A vanishing edge has no direction, and no weight either.
+                            let upright = along.cross(normal).normalize_or_zero();
+                            let weight = line_weight * weigh(along.length_squared());
+                            planes = planes + Planes::one(upright, weight);
                         }
                     }
                 }
             }
             (h, along) = (after, next_along);
             if h == first {
-                return (faces, lines);
+                return planes;
             }
         }
     }

@@ -45,7 +45,7 @@ pub type Lock<'a, K> = &'a dyn Fn(K) -> bool;
 pub struct ReduceOptions<'a> {
     /// How far.
     pub target: ReduceTarget,
-    /// How much the planes that stand upright on feature edges count, to the square of the edge's length.
+    /// How much the planes that stand upright on feature edges count, beside those of faces as large as the edge's square.
     pub line_weight: f64,
     /// Edges at which the surface turns by more than this are features; in radians. Without, sharp edges are kept as far
     /// as the error tells.
@@ -249,7 +249,7 @@ impl ReduceOptions<'_> {
 impl Mesh {
     /// Reduces the number of faces by collapsing edges, the one with the least error first.
     ///
-    /// What a collapse costs is the squared distances to the planes of the faces around the edge, by their areas (Garland
+    /// What a collapse costs is the squared distances to the planes of the faces around the edge, weighted by area (Garland
     /// and Heckbert, "Surface simplification using quadric error metrics", 1997), as they are by then and not as they
     /// were (Lindstrom and Turk, "Evaluation of memoryless simplification", 1999); vertices are placed where that is
     /// least and the volume stays the same. The error that is bounded and told is measured to the original faces.
@@ -304,7 +304,8 @@ impl Mesh {
         if before <= goal.faces {
             return Ok(nothing);
         }
-        let polygons: Vec<FaceKey> = self.faces.live().filter(|&f| !self.is_triangle_slot(f)).map(|f| self.faces.key(f)).collect();
+        let polygons: Vec<FaceKey> =
+            self.faces.live().filter(|&f| !self.is_triangle_slot(f)).map(|f| self.faces.key(f)).collect();
         let account = if polygons.is_empty() {
             self.reduce_triangles(&goal, &mut options)?
         } else {
@@ -318,7 +319,11 @@ impl Mesh {
         Ok(Reduced { faces: self.face_count(), cut: polygons, ..account.told(nothing) })
     }
 
-    fn reduce_triangles(&mut self, goal: &Goal, options: &mut ReduceOptions<'_>) -> Result<Told, ReduceError> {
+    fn reduce_triangles(
+        &mut self,
+        goal: &Goal,
+        options: &mut ReduceOptions<'_>,
+    ) -> Result<Told, ReduceError> {
         let mut copy = Copy::of(self);
         copy.mark(self, options);
         copy.sum_planes(options.line_weight);
@@ -378,6 +383,13 @@ struct Told {
 impl Told {
     fn told(self, of: Reduced) -> Reduced {
         let Account { collapses, refusals, .. } = self.account;
-        Reduced { collapses, refusals, stopped: self.stopped, merged: self.merged, max_error: self.max_error, ..of }
+        Reduced {
+            collapses,
+            refusals,
+            stopped: self.stopped,
+            merged: self.merged,
+            max_error: self.max_error,
+            ..of
+        }
     }
 }

@@ -91,7 +91,8 @@ impl Copy {
             Way::ToOrigin => place = -half,
             Way::Anywhere => {
                 // Far away the planes are all but parallel.
-                let least = quadric.least(PULL).filter(|l| l.0.length_squared() < 16.0 * half.length_squared());
+                let least =
+                    quadric.least(PULL).filter(|l| l.0.length_squared() < 16.0 * half.length_squared());
                 if let Some((least, how)) = least {
                     (place, factors) = (least, Some(how));
                 }
@@ -99,8 +100,7 @@ impl Copy {
         }
         let weight = quadric.weight();
         let length_cost = LENGTH_COST * weight * 4.0 * half.length_squared();
-        // Times the area: so the distance itself, not its square, is spread evenly over the surface.
-        let cost = (quadric.at(place).max(0.0) + length_cost) * weight;
+        let cost = (quadric.at(place).max(0.0) + length_cost) * weight.sqrt();
         Ok(Candidate { way, middle, half, place, factors, cost })
     }
 }

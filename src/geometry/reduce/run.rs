@@ -95,12 +95,7 @@ impl Run {
         PARKED
     }
 
-    fn drain(
-        &mut self,
-        copy: &mut Copy,
-        faces: usize,
-        control: &mut Control<'_>,
-    ) -> Result<bool, Cancelled> {
+    fn drain(&mut self, copy: &mut Copy, faces: usize, control: &mut Control<'_>) -> Result<bool, Cancelled> {
         let total = faces.min(copy.edges.len()).max(1);
         let mut taken = 0u32;
         while copy.removed < faces {
