@@ -93,14 +93,15 @@ impl Copy {
             let next_along = end(after);
             if !self.is_open(h ^ 1) {
                 let double_area = next_along.cross(along);
-                let length = double_area.length();
-                if length > 0.0 {
-                    let normal = double_area / length;
-                    planes = planes + Planes::one(normal, weigh(0.5 * length));
+                let square = double_area.length_squared();
+                // Below, what rounding leaves of no area.
+                if square > 1e-300 {
+                    let length = square.sqrt();
+                    planes = planes + Planes::one(double_area, weigh(0.5 * length) / square);
                     for (h, along) in [(h, along), (after, next_along)] {
                         if self.edges[h as usize >> 1].is_feature {
                             // A vanishing edge has no direction, and no weight either.
-                            let upright = along.cross(normal).normalize_or_zero();
+                            let upright = along.cross(double_area).normalize_or_zero();
                             let weight = line_weight * weigh(along.length_squared());
                             planes = planes + Planes::one(upright, weight);
                         }

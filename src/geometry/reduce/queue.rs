@@ -60,7 +60,7 @@ impl Queue {
     }
 
     pub(super) fn is_at_batch(&self, of: usize) -> bool {
-        self.done % of == 0
+        self.done.is_multiple_of(of)
     }
 
     /// Begins anew with the cheapest; everything must have been taken out.
