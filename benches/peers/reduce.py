@@ -12,7 +12,7 @@ import time
 import igl
 import numpy as np
 
-SAMPLES = 100_000
+SAMPLES = 400_000
 
 
 def read(path):

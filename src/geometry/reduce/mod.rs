@@ -29,9 +29,9 @@ pub enum ReduceTarget {
     Faces(usize),
     /// To this share of the faces, in `0.0..=1.0` without 0.
     Ratio(f64),
-    /// As far as no vertex gets further than this from the planes of the faces it stands for, in the root of the mean
-    /// square over their areas; a length in the units of the mesh. No bound on the distance between the surfaces, but
-    /// close to what that is on average.
+    /// As far as no vertex gets further than this from the planes of the original faces it stands for, and along feature
+    /// edges from those that stand upright on them: in the root of the mean square over their areas, as a length in the
+    /// units of the mesh. No bound on the distance between the surfaces, but close to what that is on average.
     MaxError(f64),
 }
 
@@ -263,8 +263,7 @@ impl Mesh {
     /// in the account; none are if the mesh has few enough faces as it is. Elements that are left keep their keys. Columns,
     /// attributes, checkpoints and the record of changes see every collapse.
     ///
-    /// The result depends on nothing but the mesh and the options. O(n log n); about a second for a million triangles,
-    /// about twice that where columns or checkpoints follow.
+    /// The result depends on nothing but the mesh and the options. O(n log n), on one thread.
     ///
     /// # Errors
     /// [`ReduceError`]; nothing has changed then.
