@@ -1,8 +1,9 @@
 //! One collapse on the copy: whether it is legal, whether it folds or flattens faces, and the links afterwards.
 
 use super::copy::Copy;
-use super::features::Hold;
+use super::features::{Hold, plane};
 use super::place::{Candidate, Way};
+use super::quadric::Planes;
 use super::{HEAVY, Refusal};
 use glam::DVec3;
 
@@ -146,10 +147,23 @@ impl Copy {
         if error > guards.error {
             return Err(Refusal::ErrorBound);
         }
+        // Away from features the planes of the faces that change are exchanged, which is less than to sum up anew.
+        let is_plain = candidate.way == Way::Anywhere
+            && [&scratch.goes, &scratch.stays]
+                .iter()
+                .all(|ring| ring.around.iter().all(|&v| self.vertex(v).hold == Hold::Free));
+        if is_plain {
+            self.withdraw(&scratch.goes);
+            self.withdraw(&scratch.stays);
+        }
         let first = self.join(halfedge, &candidate, &scratch.goes);
         let vertex = self.origin(first) as usize;
         self.vertices[vertex].memory = memory;
-        self.look_again(first, guards.line_weight);
+        if is_plain {
+            self.contribute(first);
+        } else {
+            self.look_again(first, guards.line_weight);
+        }
         Ok(Done { halfedge, error })
     }
 
@@ -217,6 +231,43 @@ impl Copy {
             others.iter().filter(|v| scratch.sorted.binary_search(v).is_ok()).count()
         };
         if common == sides { Ok(()) } else { Err(Refusal::Topology) }
+    }
+
+    /// Takes the planes of the faces around an end out of the vertices around. The last face belongs to the other end too,
+    /// as its first.
+    fn withdraw(&mut self, ring: &Ring) {
+        for (&area, pair) in ring.areas.iter().zip(ring.around.windows(2)) {
+            self.add(pair, plane(area, -1.0));
+        }
+    }
+
+    /// Gives the planes of the faces around a new vertex to it and to the vertices around.
+    fn contribute(&mut self, first: u32) {
+        let v = self.origin(first);
+        let at = self.vertex(v).position;
+        let mut fan = Planes::default();
+        let (mut h, mut end) = (first, self.origin(first ^ 1));
+        let mut along = self.vertex(end).position - at;
+        loop {
+            h = self.next(h ^ 1);
+            let next = self.origin(h ^ 1);
+            let next_along = self.vertex(next).position - at;
+            let face = plane(next_along.cross(along), 1.0);
+            fan = fan + face;
+            self.add(&[end, next], face);
+            (end, along) = (next, next_along);
+            if h == first {
+                break;
+            }
+        }
+        self.vertices[v as usize].fan = fan;
+    }
+
+    fn add(&mut self, vertices: &[u32], planes: Planes) {
+        for &v in vertices {
+            let vertex = &mut self.vertices[v as usize];
+            vertex.fan = vertex.fan + planes;
+        }
     }
 
     /// Sums up the planes anew around a vertex that has changed and its neighbours, those of many edges aside.

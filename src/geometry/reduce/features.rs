@@ -5,6 +5,7 @@ use super::copy::Copy;
 use super::quadric::Planes;
 use crate::column::Kind;
 use crate::{FeatureOptions, Mesh};
+use glam::DVec3;
 
 /// What holds a vertex of the copy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,7 +77,7 @@ impl Copy {
     /// The weight of a face is more than its area, and [`Copy::candidate`] adds to that: what counts is the mean distance,
     /// not its square, and on smooth surfaces the one grows as the square root of the other. The exponents are measured.
     pub(super) fn fan_around(&self, first: u32, line_weight: f64) -> Planes {
-        self.planes_around(first, |area| area * area.sqrt(), line_weight)
+        self.planes_around(first, weigh, line_weight)
     }
 
     /// The planes of the faces around the origin of a half-edge, each with a weight by its area, and those that stand
@@ -114,6 +115,20 @@ impl Copy {
             }
         }
     }
+}
+
+/// The weight of a face by its area.
+#[inline]
+fn weigh(area: f64) -> f64 {
+    area * area.sqrt()
+}
+
+/// The plane of one face as it counts in a fan, times a factor.
+#[inline]
+pub(super) fn plane(double_area: DVec3, factor: f64) -> Planes {
+    let square = double_area.length_squared();
+    let weight = weigh(0.5 * square.sqrt()) / square;
+    if square > 1e-300 { Planes::one(double_area, factor * weight) } else { Planes::default() }
 }
 
 /// By slot; empty if none is asked for.
