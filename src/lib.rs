@@ -66,6 +66,7 @@ pub use edit::{
 pub use geometry::deform::{DeformError, DeformOptions};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
+pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
 pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;

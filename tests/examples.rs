@@ -10,6 +10,8 @@ mod carry_uv;
 mod clean_import;
 #[path = "../examples/collapse_short_edges.rs"]
 mod collapse_short_edges;
+#[path = "../examples/level_of_detail.rs"]
+mod level_of_detail;
 #[path = "../examples/make_sample.rs"]
 mod make_sample;
 #[path = "../examples/one_ring.rs"]
@@ -139,4 +141,18 @@ fn probe_part_measures_the_bracket_from_all_sides() {
     assert!(walls.len() == 2 && (walls[0] - 6.0).abs() < 1e-9 && (walls[1] - 8.0).abs() < 1e-9, "{walls:?}");
     assert_eq!(probe.walls[0].at.x, 0.0);
     assert!(probe.clearance > 0.0 && !probe.is_inside);
+}
+
+#[test]
+fn level_of_detail_gives_three_levels_that_lose_little() {
+    let levels = level_of_detail::run().expect("runs");
+    let faces: Vec<usize> = levels.iter().map(|l| l.mesh.face_count()).collect();
+    assert_eq!(faces, [4000, 1000, 250]);
+    for (level, bound) in levels.iter().zip([1e-3, 4e-3, 2e-2]) {
+        assert_eq!(level.stopped, meshwright::Stopped::Target);
+        assert!(level.error > 0.0 && level.error < bound, "{}", level.error);
+        assert!(level.volume.abs() < 0.02, "{}", level.volume);
+        assert_eq!(level.mesh.components().len(), 1);
+    }
+    assert!(levels.is_sorted_by(|a, b| a.error < b.error));
 }

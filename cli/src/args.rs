@@ -36,6 +36,10 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Reverse the winding of all faces
     Flip(Convert),
+    /// Reduce the number of faces by collapsing edges
+    Reduce(Reduce),
+    /// Merge the two ends of an edge at its middle
+    Collapse(Collapse),
     /// Make the winding of neighbouring faces agree
     Unify(Unify),
     /// Ask whether every edge has exactly two faces, with witnesses
@@ -114,6 +118,51 @@ pub(crate) struct Convert {
     pub(crate) file: PathBuf,
     #[command(flatten)]
     pub(crate) output: Output,
+    #[command(flatten)]
+    pub(crate) strict: Strict,
+}
+
+/// Arguments of `reduce`.
+#[derive(Debug, Args)]
+pub(crate) struct Reduce {
+    /// The file
+    pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) output: Output,
+    #[command(flatten)]
+    pub(crate) goal: Goal,
+    /// Keep edges at which the surface turns by more than this
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    pub(crate) sharp: Option<f64>,
+    #[command(flatten)]
+    pub(crate) strict: Strict,
+}
+
+/// How far to reduce.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Goal {
+    /// To this many faces
+    #[arg(long, value_name = "N")]
+    pub(crate) faces: Option<usize>,
+    /// To this share of the faces, above 0 and at most 1
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub(crate) ratio: Option<f64>,
+    /// As far as the error stays below this, in the file's units
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    pub(crate) max_error: Option<f64>,
+}
+
+/// Arguments of `collapse`.
+#[derive(Debug, Args)]
+pub(crate) struct Collapse {
+    /// The file
+    pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) output: Output,
+    /// The edge, by its vertices in the file, counted from 0
+    #[arg(long, value_name = "I,J", value_parser = edge)]
+    pub(crate) edge: [usize; 2],
     #[command(flatten)]
     pub(crate) strict: Strict,
 }
@@ -360,6 +409,12 @@ impl Output {
         let message = || format!("{}: the extension must be .obj, .stl, .ply or .off", self.output.display());
         Format::from_path(&self.output).ok_or_else(|| Failure::Usage(message()))
     }
+}
+
+fn edge(word: &str) -> Result<[usize; 2], String> {
+    let number = |part: &str| part.trim().parse().ok();
+    let ends = word.split_once(',').and_then(|(i, j)| Some([number(i)?, number(j)?]));
+    ends.ok_or_else(|| "two vertex numbers with a comma between".to_owned())
 }
 
 fn weld(word: &str) -> Result<Weld, String> {

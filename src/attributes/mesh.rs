@@ -17,7 +17,7 @@ pub(crate) struct Carried {
     pub(crate) corner_normals: Option<Column<HalfedgeKey, Option<DVec3>>>,
     uvs: Option<Column<HalfedgeKey, Option<DVec2>>>,
     /// Indices into `names`; [`NONE`] for a face in no group.
-    groups: Option<Column<FaceKey, u32>>,
+    pub(crate) groups: Option<Column<FaceKey, u32>>,
     names: Vec<GroupName>,
     material_files: Vec<String>,
 }

@@ -220,6 +220,16 @@ impl Columns {
         (0..).zip(&mut self.kinds[kind as usize]).filter_map(|(i, c)| Some((i, c.as_mut()?)))
     }
 
+    /// The columns on a kind of element, with their places, to be read.
+    pub(crate) fn each(&self, kind: Kind) -> impl Iterator<Item = (u32, &dyn Dense)> {
+        (0..).zip(&self.kinds[kind as usize]).filter_map(|(i, c)| Some((i, c.as_deref()?)))
+    }
+
+    /// Whether any column lies on anything.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.kinds.iter().all(|kind| kind.iter().flatten().next().is_none())
+    }
+
     /// Whether every column on a kind of element has this length.
     pub(crate) fn fit(&self, kind: Kind, len: usize) -> bool {
         self.kinds[kind as usize].iter().flatten().all(|c| c.len() == len)

@@ -84,6 +84,11 @@ impl Mesh {
     pub fn collapse(&mut self, h: HalfedgeKey, position: DVec3) -> Result<Collapsed, CollapseError> {
         self.check_collapse(h, position)?;
         let h = self.halfedge_slot(h).ok_or(CollapseError::Missing(h))?;
+        Ok(self.collapse_checked(h, position))
+    }
+
+    /// Collapses an edge that is known to be legal to collapse.
+    pub(crate) fn collapse_checked(&mut self, h: u32, position: DVec3) -> Collapsed {
         let t = h ^ 1;
         let (a, b) = (self.origin[h as usize], self.origin[t as usize]);
         let share = self.share_along(b, a, position);
@@ -108,7 +113,7 @@ impl Mesh {
         self.drop_vertex(a, Some(b));
         self.settle(b, out);
         self.write_position(b, position);
-        Ok(done)
+        done
     }
 
     /// [Collapses](Self::collapse) an edge to its midpoint.

@@ -5,6 +5,7 @@ mod bulk;
 mod change;
 mod clean;
 mod look;
+mod shrink;
 
 use crate::args::Command;
 use crate::session::{Answer, Failure, Session};
@@ -22,6 +23,8 @@ pub(crate) fn run(command: &Command, session: &mut Session) -> Result<Answer, Fa
         Command::Clean(args) => clean::clean(session, args),
         Command::Convert(args) => change::convert(session, args),
         Command::Flip(args) => change::flip(session, args),
+        Command::Reduce(args) => shrink::reduce(session, args),
+        Command::Collapse(args) => shrink::collapse(session, args),
         Command::Unify(args) => change::unify(session, args),
         Command::Weld(args) => bulk::weld(session, args),
         Command::Unweld(args) => bulk::unweld(session, args),

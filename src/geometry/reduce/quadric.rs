@@ -1,0 +1,162 @@
+//! Quadrics: sums of squared distances to planes.
+//!
+//! Garland and Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997. Each is kept about a point
+//! of its own, near where it is small, so that the digits do not go into the distance from the origin.
+
+use glam::DVec3;
+use std::ops::Add;
+
+/// The sum of `weight * normal normalᵀ` over planes: xx xy xz yy yz zz.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Planes([f64; 6]);
+
+/// The sum of `weight * distance^2` over planes, as a function of `x`: `xᵀAx + 2b·x + c`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Quadric {
+    a: Planes,
+    b: DVec3,
+    c: f64,
+}
+
+impl Planes {
+    /// One plane; the normal need not have unit length, its square counts.
+    #[inline]
+    pub(super) fn one(normal: DVec3, weight: f64) -> Self {
+        let (n, m) = (normal, normal * weight);
+        Self([m.x * n.x, m.x * n.y, m.x * n.z, m.y * n.y, m.y * n.z, m.z * n.z])
+    }
+
+    #[inline]
+    fn times(&self, x: DVec3) -> DVec3 {
+        let [xx, xy, xz, yy, yz, zz] = self.0;
+        DVec3::new(
+            xx * x.x + xy * x.y + xz * x.z,
+            xy * x.x + yy * x.y + yz * x.z,
+            xz * x.x + yz * x.y + zz * x.z,
+        )
+    }
+
+    /// Where all of them pass through one point, as seen from the point at `by`.
+    #[inline]
+    pub(super) fn about(&self, by: DVec3) -> Quadric {
+        let b = self.times(by);
+        Quadric { a: *self, b, c: b.dot(by) }
+    }
+}
+
+impl Quadric {
+    /// The same about the point at `by`.
+    #[inline]
+    pub(super) fn about(&self, by: DVec3) -> Self {
+        let turned = self.a.times(by);
+        Self { a: self.a, b: self.b + turned, c: self.c + (self.b + self.b + turned).dot(by) }
+    }
+
+    #[inline]
+    pub(super) fn at(&self, x: DVec3) -> f64 {
+        (self.b + self.b + self.a.times(x)).dot(x) + self.c
+    }
+
+    /// The sum of the weights.
+    #[inline]
+    pub(super) fn weight(&self) -> f64 {
+        self.a.0[0] + self.a.0[3] + self.a.0[5]
+    }
+
+    /// Where it is least, drawn towards the point it is about by `pull` times its weight, so that there is one such place:
+    /// on a plane or along a crease the one nearest to that point.
+    #[inline]
+    pub(super) fn least(&self, pull: f64) -> Option<(DVec3, Factors)> {
+        let factors = Factors::of(&self.a.0, pull * self.weight())?;
+        Some((factors.solve(-self.b), factors))
+    }
+}
+
+impl From<Planes> for Quadric {
+    /// About the point through which all of them pass.
+    fn from(a: Planes) -> Self {
+        Self { a, b: DVec3::ZERO, c: 0.0 }
+    }
+}
+
+impl Add for Planes {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let mut a = self.0;
+        a.iter_mut().zip(other.0).for_each(|(a, b)| *a += b);
+        Self(a)
+    }
+}
+
+impl Add for Quadric {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
+    }
+}
+
+/// A symmetric positive matrix, taken apart as LDLᵀ; keeps its digits where A is all but singular, which Cramer's rule
+/// does not.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factors {
+    inverse: DVec3,
+    yx: f64,
+    zx: f64,
+    zy: f64,
+}
+
+impl Factors {
+    #[inline]
+    fn of(&[xx, xy, xz, yy, yz, zz]: &[f64; 6], shift: f64) -> Option<Self> {
+        let dx = xx + shift;
+        let ix = 1.0 / dx;
+        let (yx, zx) = (xy * ix, xz * ix);
+        let dy = yy + shift - yx * xy;
+        let iy = 1.0 / dy;
+        let rest = yz - yx * xz;
+        let zy = rest * iy;
+        let dz = zz + shift - zx * xz - zy * rest;
+        let is_positive = dx > 0.0 && dy > 0.0 && dz > 0.0;
+        let inverse = DVec3::new(ix, iy, 1.0 / dz);
+        (is_positive && inverse.is_finite()).then_some(Self { inverse, yx, zx, zy })
+    }
+
+    #[inline]
+    pub(super) fn solve(&self, v: DVec3) -> DVec3 {
+        let y = v.y - self.yx * v.x;
+        let z = v.z - self.zx * v.x - self.zy * y;
+        let z = z * self.inverse.z;
+        let y = y * self.inverse.y - self.zy * z;
+        DVec3::new(v.x * self.inverse.x - self.yx * y - self.zx * z, y, z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    #[test]
+    fn three_planes_meet_where_their_sum_is_least() {
+        let corner = dvec3(0.25, -0.5, 0.125);
+        let planes = [dvec3(1., 1., 0.), dvec3(0., 1., -1.), dvec3(2., 0., 1.)];
+        let sum = planes.iter().fold(Planes::default(), |q, &n| q + Planes::one(n, 1.0)).about(-corner);
+        let (least, _) = sum.least(1e-14).expect("one place");
+        assert!((least - corner).length() < 1e-12, "{least}");
+        assert!(sum.at(corner).abs() < 1e-15);
+        let far: f64 = planes.iter().map(|n| n.dot(DVec3::ONE - corner).powi(2)).sum();
+        assert!((sum.at(DVec3::ONE) - far).abs() < 1e-12);
+    }
+
+    #[test]
+    fn on_a_plane_the_nearest_place_is_taken() {
+        let q = Planes::one(DVec3::Z, 3.0).about(dvec3(5., 7., -1.));
+        let (least, _) = q.least(1e-10).expect("one place");
+        assert!((least - DVec3::Z).length() < 1e-9, "{least}");
+        assert_eq!(q.weight(), 3.0);
+    }
+}

@@ -1,0 +1,89 @@
+//! The queue of edges: buckets of costs that differ by less than half a percent.
+
+/// Edges by cost. A cost counts by the upper bits of its `f32`, which order as the number does; within a bucket edges go
+/// by number, so that they lie together in memory.
+pub(super) struct Queue {
+    buckets: Vec<Vec<u32>>,
+    /// The first bucket that may hold something.
+    at: usize,
+    /// The bucket that is being emptied, and how far.
+    list: Vec<u32>,
+    done: usize,
+}
+
+const SHIFT: u32 = 15;
+/// No bucket: the edge waits for something around it to change.
+pub(super) const PARKED: u32 = u32::MAX;
+
+impl Queue {
+    pub(super) fn new() -> Self {
+        // Costs are no less than zero.
+        let buckets = vec![Vec::new(); (f32::INFINITY.to_bits() >> SHIFT) as usize + 1];
+        Self { buckets, at: 0, list: Vec::new(), done: 0 }
+    }
+
+    /// The bucket for a cost; none that has been emptied already.
+    #[inline]
+    pub(super) fn bucket(&self, cost: f64) -> u32 {
+        (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).clamp(self.at, self.buckets.len() - 1) as u32
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, bucket: u32, edge: u32) {
+        self.buckets[bucket as usize].push(edge);
+    }
+
+    /// The next entry and its bucket: out of date if the edge has another bucket by now.
+    #[inline]
+    pub(super) fn pop(&mut self) -> Option<(u32, u32)> {
+        while self.done == self.list.len() {
+            while self.buckets[self.at].is_empty() {
+                if self.at + 1 == self.buckets.len() {
+                    return None;
+                }
+                self.buckets[self.at] = Vec::new();
+                self.at += 1;
+            }
+            self.list.clear();
+            self.done = 0;
+            std::mem::swap(&mut self.list, &mut self.buckets[self.at]);
+            self.list.sort_unstable();
+        }
+        self.done += 1;
+        Some((self.list[self.done - 1], self.at as u32))
+    }
+
+    /// What comes next, as far as it is in order already.
+    #[inline]
+    pub(super) fn ahead(&self, count: usize) -> &[u32] {
+        &self.list[self.done..(self.done + count).min(self.list.len())]
+    }
+
+    pub(super) fn is_at_batch(&self, of: usize) -> bool {
+        self.done.is_multiple_of(of)
+    }
+
+    /// Begins anew with the cheapest; everything must have been taken out.
+    pub(super) fn rewind(&mut self) {
+        self.at = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_come_out_by_cost_and_a_cost_of_any_size_has_a_bucket() {
+        let mut queue = Queue::new();
+        let costs = [f64::MAX, 1e-300, 2.0, 0.0, 1.0, f64::INFINITY, 1e-9];
+        for (edge, &cost) in (0..).zip(&costs) {
+            queue.push(queue.bucket(cost), edge);
+        }
+        let order: Vec<u32> = std::iter::from_fn(|| queue.pop()).map(|p| p.0).collect();
+        assert_eq!(order, [1, 3, 6, 4, 2, 0, 5]);
+        assert_eq!(queue.bucket(0.0), queue.bucket(f64::INFINITY), "no way back");
+        queue.rewind();
+        assert_eq!(queue.bucket(0.0), 0);
+    }
+}
