@@ -1,35 +1,19 @@
 //! `raycast` and `closest` from outside.
 
+mod harness;
+
+use harness::run;
 use serde_json::{Value, json};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 
 const CUBE: &str = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     f 2 2 2\nf 2 5 4 3\nf 6 7 8 9\nf 2 3 7 6\nf 3 4 8 7\nf 4 5 9 8\nf 5 2 6 9\n";
 
 fn directory(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ask-{test}"));
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a directory");
+    let path = harness::directory(&format!("ask-{test}"));
     fs::write(path.join("cube.obj"), CUBE).expect("written");
     path
-}
-
-fn run(directory: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meshwright"))
-        .current_dir(directory)
-        .args(args)
-        .output()
-        .expect("it runs")
-}
-
-fn json_of(directory: &Path, args: &[&str]) -> (i32, Value) {
-    let output = run(directory, &[args, &["--json"]].concat());
-    let text = String::from_utf8(output.stdout).expect("text");
-    let value: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{args:?}: {e}: {text:?}"));
-    assert!(value["timings_ms"].is_object() && value["peak_rss_bytes"].is_number());
-    (output.status.code().expect("a code"), value)
 }
 
 #[test]
@@ -37,7 +21,7 @@ fn raycast_lists_hits_in_the_files_numbering() {
     let dir = directory("hits");
     // The dropped face comes first in the file and is counted there.
     let ray = ["raycast", "cube.obj", "--origin", "-1,0.25,0.5", "--direction", "1,0,0"];
-    let (code, answer) = json_of(&dir, &ray);
+    let (code, answer) = harness::json(&dir, &ray);
     assert_eq!(code, 0);
     let hits = answer["hits"].as_array().expect("hits");
     assert_eq!(hits.len(), 2);
@@ -47,7 +31,7 @@ fn raycast_lists_hits_in_the_files_numbering() {
     assert_eq!(hits[0]["feature"], json!({ "face": 6 }));
     assert_eq!((&hits[0]["entering"], &hits[1]["entering"]), (&json!(true), &json!(false)));
     assert!(answer["import"].is_object());
-    let (_, first) = json_of(&dir, &[&ray[..], &["--first"]].concat());
+    let (_, first) = harness::json(&dir, &[&ray[..], &["--first"]].concat());
     assert_eq!(first["hits"], json!([hits[0]]));
     let text = String::from_utf8(run(&dir, &ray).stdout).expect("text");
     assert!(text.starts_with("2 hits\nt 1: enters at (0, 0.25, 0.5), face 6\n"), "{text}");
@@ -57,7 +41,7 @@ fn raycast_lists_hits_in_the_files_numbering() {
 fn the_diagonal_crosses_twice_and_a_graze_is_a_touch() {
     let dir = directory("diagonal");
     let cast = |o: &str, d: &str| {
-        let (code, answer) = json_of(&dir, &["raycast", "cube.obj", "--origin", o, "--direction", d]);
+        let (code, answer) = harness::json(&dir, &["raycast", "cube.obj", "--origin", o, "--direction", d]);
         assert_eq!(code, 0);
         answer["hits"].as_array().expect("hits").clone()
     };
@@ -77,7 +61,7 @@ fn the_diagonal_crosses_twice_and_a_graze_is_a_touch() {
 fn closest_finds_each_kind_of_element() {
     let dir = directory("closest");
     let ask = |point: &str, to: &str| {
-        let (code, answer) = json_of(&dir, &["closest", "cube.obj", "--point", point, "--to", to]);
+        let (code, answer) = harness::json(&dir, &["closest", "cube.obj", "--point", point, "--to", to]);
         assert_eq!(code, 0);
         (answer["element"].clone(), answer["point"].clone(), answer["distance"].clone())
     };
@@ -88,11 +72,11 @@ fn closest_finds_each_kind_of_element() {
     assert_eq!(ask("0.5,0.5,3", "face-center"), (json!({ "face": 2 }), json!([0.5, 0.5, 1.0]), json!(2.0)));
     assert_eq!(ask("1,2,0.5", "surface"), (json!({ "edge": [3, 7] }), json!([1.0, 1.0, 0.5]), json!(1.0)));
     let inside = ["closest", "cube.obj", "--point", "0.5,0.5,0.875", "--to", "surface"];
-    assert_eq!(json_of(&dir, &inside).1["signed_distance"], json!(-0.125));
+    assert_eq!(harness::json(&dir, &inside).1["signed_distance"], json!(-0.125));
     let text = String::from_utf8(run(&dir, &inside).stdout).expect("text");
     assert_eq!(text, "face 2 at (0.5, 0.5, 1), distance 0.125\n");
     let far = [&inside[..], &["--max-distance", "0.1"]].concat();
-    let (code, answer) = json_of(&dir, &far);
+    let (code, answer) = harness::json(&dir, &far);
     assert_eq!((code, &answer["element"]), (1, &Value::Null));
 }
 
@@ -101,19 +85,21 @@ fn batches_answer_each_line_as_a_single_question() {
     let dir = directory("batch");
     fs::write(dir.join("rays.txt"), "-1,0.25,0.5,1,0,0\n\n-1, -1, -1, 1, 1, 1\n5,5,5,1,0,0\n")
         .expect("written");
-    let (code, answer) = json_of(&dir, &["raycast", "cube.obj", "--queries", "rays.txt"]);
+    let (code, answer) = harness::json(&dir, &["raycast", "cube.obj", "--queries", "rays.txt"]);
     assert_eq!(code, 0);
     let results = answer["results"].as_array().expect("results");
     let counts: Vec<_> = results.iter().map(|r| r["hits"].as_array().map(Vec::len)).collect();
     assert_eq!(counts, [Some(2), Some(2), Some(0)]);
-    let single = json_of(&dir, &["raycast", "cube.obj", "--origin", "-1,0.25,0.5", "--direction", "1,0,0"]).1;
+    let single =
+        harness::json(&dir, &["raycast", "cube.obj", "--origin", "-1,0.25,0.5", "--direction", "1,0,0"]).1;
     assert_eq!(results[0]["hits"], single["hits"]);
     fs::write(dir.join("points.txt"), "0.5,0.25,3\n-1,0,0\n").expect("written");
     for to in ["vertex", "edge", "face", "face-center", "surface"] {
-        let (code, answer) = json_of(&dir, &["closest", "cube.obj", "--to", to, "--queries", "points.txt"]);
+        let (code, answer) =
+            harness::json(&dir, &["closest", "cube.obj", "--to", to, "--queries", "points.txt"]);
         let results = answer["results"].as_array().expect("results");
         assert_eq!((code, results.len()), (0, 2));
-        let single = json_of(&dir, &["closest", "cube.obj", "--to", to, "--point", "-1,0,0"]).1;
+        let single = harness::json(&dir, &["closest", "cube.obj", "--to", to, "--point", "-1,0,0"]).1;
         assert_eq!((&results[1]["element"], &results[1]["point"]), (&single["element"], &single["point"]));
     }
 }
@@ -135,10 +121,10 @@ fn bad_questions_are_told_apart() {
     assert_eq!(code(&["closest", "cube.obj", "--point", "0,0,0", "--to", "moon"]), 2);
     assert_eq!(code(&["closest", "cube.obj", "--to", "face", "--queries", "absent.txt"]), 3);
     fs::write(dir.join("q.txt"), "1,2,3\n1,2\n").expect("written");
-    let (code, answer) = json_of(&dir, &["closest", "cube.obj", "--to", "face", "--queries", "q.txt"]);
+    let (code, answer) = harness::json(&dir, &["closest", "cube.obj", "--to", "face", "--queries", "q.txt"]);
     assert_eq!((code, &answer["error"]["line"]), (3, &json!(2)));
     fs::write(dir.join("q.txt"), "0,0,0,0,0,0\n").expect("written");
-    let (code, answer) = json_of(&dir, &["raycast", "cube.obj", "--queries", "q.txt"]);
+    let (code, answer) = harness::json(&dir, &["raycast", "cube.obj", "--queries", "q.txt"]);
     assert!(
         code == 1 && answer["error"]["message"].as_str().is_some_and(|m| m.contains("line 1")),
         "{answer}"

@@ -1,15 +1,15 @@
 //! Transforms, weld, subdivision and smoothing from outside.
 
+mod harness;
+
+use harness::json;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// A directory of this test's own, with a cube, a sheet and a soup in it.
 fn directory(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("bulk_{test}"));
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a directory");
+    let path = harness::directory(&format!("bulk-{test}"));
     fs::write(path.join("cube.obj"), CUBE).expect("written");
     fs::write(path.join("sheet.obj"), SHEET).expect("written");
     fs::write(path.join("soup.obj"), SOUP).expect("written");
@@ -21,24 +21,6 @@ const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 
 const SHEET: &str = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n\
     f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\n";
 const SOUP: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 1 1 0\nv 0 1.001 0\nf 1 2 3\nf 4 5 6\n";
-
-fn json(directory: &Path, args: &[&str]) -> (i32, Value) {
-    let output = Command::new(env!("CARGO_BIN_EXE_meshwright"))
-        .current_dir(directory)
-        .args(args)
-        .arg("--json")
-        .output()
-        .expect("it runs");
-    let code = output.status.code().expect("a code");
-    if code == 2 && output.stdout.is_empty() {
-        return (2, Value::Null);
-    }
-    let text = String::from_utf8(output.stdout).expect("text");
-    let value: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{args:?}: {e}: {text:?}"));
-    assert_eq!(value["timings_ms"].as_object().map(serde_json::Map::len), Some(4), "{args:?}");
-    assert!(value["peak_rss_bytes"].is_u64(), "{args:?}");
-    (code, value)
-}
 
 fn inspect(directory: &Path, file: &str) -> Value {
     json(directory, &["inspect", file]).1
@@ -156,7 +138,7 @@ fn transform_scales_rotates_and_translates_in_this_order() {
         [&["--scale", "a"][..], &["--rotate", "0,0,1"], &["--translate", "1,2"], &["--origin", "middle"]]
     {
         let args = [&["transform", "cube.obj", "-o", "never.obj"], more].concat();
-        assert_eq!(json(&dir, &args).0, 2, "{more:?}");
+        assert_eq!(harness::code(&dir, &args), 2, "{more:?}");
     }
     assert!(!dir.join("never.obj").exists());
 }
@@ -191,6 +173,6 @@ fn strict_import_and_wrong_usage_are_as_everywhere() {
         &["transform", "cube.obj"],
         &["transform", "cube.obj", "-o", "b.xyz"],
     ] {
-        assert_eq!(json(&dir, args).0, 2, "{args:?}");
+        assert_eq!(harness::code(&dir, args), 2, "{args:?}");
     }
 }

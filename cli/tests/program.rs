@@ -1,43 +1,14 @@
 //! The program from outside: what it prints, what it writes, and how it ends.
 
+mod harness;
+
+use harness::{code, directory, json, run};
 use serde_json::Value;
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-
-/// A directory of this test's own.
-fn directory(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a directory");
-    path
-}
-
-fn run(directory: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meshwright"))
-        .current_dir(directory)
-        .args(args)
-        .output()
-        .expect("it runs")
-}
-
-/// The exit code and the one JSON object on standard output.
-fn json(directory: &Path, args: &[&str]) -> (i32, Value) {
-    let output = run(directory, &[args, &["--json"]].concat());
-    let text = String::from_utf8(output.stdout).expect("text");
-    let value: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{args:?}: {e}: {text:?}"));
-    assert_eq!(text.lines().count(), 1, "one line");
-    let timings = value["timings_ms"].as_object().expect("timings");
-    assert_eq!(timings.keys().collect::<Vec<_>>(), ["build", "read", "run", "write"]);
-    assert!(value["peak_rss_bytes"].as_u64().expect("a number") > 0 || !cfg!(target_os = "linux"));
-    (output.status.code().expect("a code"), value)
-}
-
-fn code(directory: &Path, args: &[&str]) -> i32 {
-    run(directory, args).status.code().expect("a code")
-}
 
 /// OBJ text of unit cubes at the given corners, sharing vertices at equal places.
 fn cubes(corners: &[[i32; 3]]) -> String {

@@ -1,30 +1,10 @@
 //! `reduce` and `collapse` from outside.
 
+mod harness;
+
+use harness::{directory, json, run};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn directory(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a directory");
-    path
-}
-
-fn run(directory: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meshwright"))
-        .current_dir(directory)
-        .args(args)
-        .output()
-        .expect("it runs")
-}
-
-fn json(directory: &Path, args: &[&str]) -> (i32, Value) {
-    let output = run(directory, &[args, &["--json"]].concat());
-    let value = serde_json::from_slice(&output.stdout).expect("one object");
-    (output.status.code().expect("a code"), value)
-}
 
 /// A square of `n` by `n` quads, a little hilly.
 fn hills(n: usize) -> String {
@@ -44,7 +24,7 @@ const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\
 
 #[test]
 fn reduce_meets_each_kind_of_target_and_says_how_it_ended() {
-    let dir = directory("reduce_targets");
+    let dir = directory("reduce-reduce_targets");
     fs::write(dir.join("hills.obj"), hills(20)).expect("written");
     for (flag, value, stopped) in
         [("--faces", "100", "target"), ("--ratio", "0.25", "target"), ("--max-error", "0.05", "error-bound")]
@@ -65,7 +45,7 @@ fn reduce_meets_each_kind_of_target_and_says_how_it_ended() {
 
 #[test]
 fn reduce_stops_at_a_tetrahedron_without_failing() {
-    let dir = directory("reduce_tetrahedron");
+    let dir = directory("reduce-reduce_tetrahedron");
     fs::write(dir.join("a.obj"), TETRAHEDRON).expect("written");
     let (code, answer) = json(&dir, &["reduce", "a.obj", "--faces", "1", "-o", "out.obj"]);
     assert_eq!((code, &answer["faces"], &answer["stopped"]), (0, &4.into(), &"no-legal-collapse".into()));
@@ -73,7 +53,7 @@ fn reduce_stops_at_a_tetrahedron_without_failing() {
 
 #[test]
 fn reduce_refuses_what_makes_no_sense_and_writes_nothing() {
-    let dir = directory("reduce_refuses");
+    let dir = directory("reduce-reduce_refuses");
     fs::write(dir.join("a.obj"), TETRAHEDRON).expect("written");
     for (flag, value) in [
         ("--faces", "0"),
@@ -96,7 +76,7 @@ fn reduce_refuses_what_makes_no_sense_and_writes_nothing() {
 
 #[test]
 fn collapse_merges_the_ends_at_the_middle() {
-    let dir = directory("collapse");
+    let dir = directory("reduce-collapse");
     fs::write(dir.join("hills.obj"), hills(4)).expect("written");
     let (code, answer) = json(&dir, &["collapse", "hills.obj", "--edge", "6,7", "-o", "out.obj"]);
     assert_eq!((code, &answer["vertices"], &answer["faces"]), (0, &24.into(), &16.into()), "{answer}");
@@ -105,7 +85,7 @@ fn collapse_merges_the_ends_at_the_middle() {
 
 #[test]
 fn collapse_refuses_with_the_reason() {
-    let dir = directory("collapse_refuses");
+    let dir = directory("reduce-collapse_refuses");
     fs::write(dir.join("a.obj"), TETRAHEDRON).expect("written");
     for (edge, reason) in [("0,1", "same corners"), ("0,9", "no vertex 9"), ("2,2", "no edge")] {
         let (code, answer) = json(&dir, &["collapse", "a.obj", "--edge", edge, "-o", "out.obj"]);
