@@ -61,7 +61,7 @@ fn unweld_parts_and_weld_gives_back() {
 fn smooth_takes_its_methods_and_boundaries() {
     let dir = directory("smooth");
     let base = ["smooth", "--iterations", "10", "--lambda", "0.5", "-o", "b.ply"];
-    let run = |more: &[&str]| json(&dir, &[&base[..], more].concat()).0;
+    let run = |more: &[&str]| harness::code(&dir, &[&base[..], more].concat());
     for more in [
         &["cube.obj"][..],
         &["cube.obj", "--method", "laplacian"],
@@ -104,10 +104,8 @@ fn subdivide_knows_four_schemes() {
     let (code, answer) = json(&dir, &args);
     assert_eq!((code, &answer["error"]["kind"]), (1, &"refused".into()));
     assert!(!dir.join("never.obj").exists());
-    assert_eq!(
-        json(&dir, &["subdivide", "--scheme", "butterfly", "--levels", "1", "cube.obj", "-o", "b.obj"]).0,
-        2
-    );
+    let args = ["subdivide", "--scheme", "butterfly", "--levels", "1", "cube.obj", "-o", "b.obj"];
+    assert_eq!(harness::code(&dir, &args), 2);
 }
 
 #[test]
