@@ -160,7 +160,7 @@ impl Mesh {
         self.carried.uvs.is_some_and(|uvs| self.is_seam(uvs, e))
     }
 
-    /// Sets the normal of a vertex; if the mesh carried none, all others become zero.
+    /// Sets the normal of a vertex; if the mesh carried none, all others become zero. O(1), but for the first.
     ///
     /// # Errors
     /// [`SetAttributeError`]; nothing has changed then.
@@ -178,7 +178,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Sets the colour of a vertex; if the mesh carried none, all others become white.
+    /// Sets the colour of a vertex; if the mesh carried none, all others become white. O(1), but for the first.
     ///
     /// # Errors
     /// [`SetAttributeError`]; nothing has changed then.
@@ -196,7 +196,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Sets or takes away the normal of the corner at the start of a half-edge.
+    /// Sets or takes away the normal of the corner at the start of a half-edge. O(1), but for the first.
     ///
     /// # Errors
     /// [`SetAttributeError`]; nothing has changed then.
@@ -218,7 +218,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Sets or takes away the texture coordinates of the corner at the start of a half-edge.
+    /// Sets or takes away the texture coordinates of the corner at the start of a half-edge. O(1), but for the first.
     ///
     /// # Errors
     /// [`SetAttributeError`]; nothing has changed then.

@@ -5,6 +5,9 @@
 //! is no need to call both; on `Err` nothing has changed: not a link, a version, a free slot or a value. An operator's
 //! result names every element born and dead; all other keys stay valid and keep their meaning.
 //!
+//! `split_edge_and_faces`, `collapse_to_midpoint` and `collapse_into_target` are conveniences: the `check_` of the operator
+//! they are made of answers for them.
+//!
 //! Cost is O(elements touched): the faces and vertices around the place. No operator looks at the rest of the mesh.
 //! Links are written here, through [`link`], and in the builder; nowhere else.
 
