@@ -155,6 +155,27 @@ struct Cleaned<M> {
     carried: Carried,
     report: Report,
     maps: Maps,
+    sources: Sources,
+}
+
+/// Where the elements of the result were in the soup.
+pub(crate) struct Sources {
+    /// For each corner the soup's.
+    pub(crate) corners: Vec<u32>,
+    /// For each face the soup's.
+    pub(crate) faces: Vec<u32>,
+    /// The corners in the middle of a parted edge, which were none of the soup's; ascending.
+    pub(crate) middles: Vec<u32>,
+}
+
+/// As [`clean`], but tells of corners too.
+pub(crate) fn clean_tracked(
+    soup: &PolygonSoup,
+    options: CleanOptions<'_>,
+) -> Result<(Outcome<Mesh>, Sources), CleanError> {
+    let cleaned = run(soup, options, |mesh| mesh)?;
+    let (value, maps) = (cleaned.kept, cleaned.maps);
+    Ok((Outcome { value, report: tell(cleaned.report, &cleaned.carried), maps }, cleaned.sources))
 }
 
 fn run<M>(
@@ -174,8 +195,9 @@ fn run<M>(
         let indexed = pool.lend(std::mem::take(&mut carried.attributes));
         if let Some(mesh) = assemble(&indexed, &chains.into_pairing()) {
             let kept = keep(mesh);
+            let sources = pool.sources();
             let (report, maps) = pool.account(indexed.positions());
-            return Ok(Cleaned { indexed, kept, carried, report, maps });
+            return Ok(Cleaned { indexed, kept, carried, report, maps, sources });
         }
         pool.take_back(indexed);
     }
@@ -198,7 +220,8 @@ fn run<M>(
     let mut carried = carry::carry(&pool, |v| maps.vertices.new_of(v));
     let indexed = pool.lend(std::mem::take(&mut carried.attributes));
     let kept = keep(Mesh::build(&indexed).map_err(CleanError::Bug)?);
-    Ok(Cleaned { indexed, kept, carried, report: pool.report, maps })
+    let sources = pool.sources();
+    Ok(Cleaned { indexed, kept, carried, report: pool.report, maps, sources })
 }
 
 /// The report with what the result does not have of the soup's attributes.
