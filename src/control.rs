@@ -59,6 +59,15 @@ impl<'a> Control<'a> {
         let answer = self.hook.as_mut().map_or(ControlFlow::Continue(()), |hook| hook(progress));
         if answer.is_break() { Err(Cancelled) } else { Ok(()) }
     }
+
+    /// Runs a part of the call, which reports shares of its own: 0 and 1 there are `from` and `to` of the whole.
+    pub(crate) fn part<T>(&mut self, from: f64, to: f64, run: impl FnOnce(&mut Control<'_>) -> T) -> T {
+        let mut hook = |p: Progress| match self.report(p.stage, from + (to - from) * p.fraction) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(Cancelled) => ControlFlow::Break(()),
+        };
+        run(&mut Control::new(&mut hook))
+    }
 }
 
 impl fmt::Debug for Control<'_> {

@@ -12,7 +12,7 @@ mod pool;
 mod split;
 mod weld;
 
-pub use facts::{Facts, inspect};
+pub use facts::{Facts, inspect, inspect_with};
 pub use weld::propose_tolerance;
 
 use crate::build::assemble;
@@ -245,7 +245,31 @@ fn tell(report: Report, carried: &Carried) -> Report {
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
-    let mut pool = Pool::new(soup, weld, &mut Control::none())?;
+    index_with(soup, weld, Control::none())
+}
+
+/// As [`index`], with a progress-and-cancel hook.
+///
+/// # Errors
+/// As [`index`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, PolygonSoup, Progress, cleanup::{CleanError, Weld, index_with}};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let refused = index_with(&PolygonSoup::default(), Weld::Exact, Control::new(&mut stop));
+/// assert!(matches!(refused, Err(CleanError::Cancelled(_))));
+/// ```
+pub fn index_with(
+    soup: &PolygonSoup,
+    weld: Weld,
+    mut control: Control<'_>,
+) -> Result<Outcome<IndexedMesh>, CleanError> {
+    control.report("weld", 0.0)?;
+    // The pool is the first two fifths of a clean-up, and nearly all there is to this.
+    let mut pool = control.part(0.0, 2.0, |control| Pool::new(soup, weld, control))?;
+    control.report("carry attributes", 0.8)?;
     let mut carried = pool.carry_welded();
     let value = pool.lend(std::mem::take(&mut carried.attributes));
     let (report, maps) = pool.account(value.positions());
