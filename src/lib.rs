@@ -67,7 +67,7 @@ pub use geometry::deform::{DeformError, DeformOptions};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
-pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
+pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions, SmoothWeights};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;
 pub use geometry::weld::{BadAngle, UnweldError, UnweldOptions, WeldOptions};

@@ -223,9 +223,8 @@ fn a_seam_under_sqrt3_runs_in_a_zigzag_and_both_sides_go_on() {
     let mut pool = shapes::grid(4);
     pool.map_positions(|p| dvec3(p.x, p.y, 0.0)).expect("finite");
     let mut mesh = shapes::mesh(&pool);
-    let is_right = |mesh: &Mesh, f: FaceKey| {
-        mesh.face_vertices(f).map(|v| mesh.position(v).x).sum::<f64>() / 3.0 > 2.0
-    };
+    let is_right =
+        |mesh: &Mesh, f: FaceKey| mesh.face_vertices(f).map(|v| mesh.position(v).x).sum::<f64>() / 3.0 > 2.0;
     for h in corners(&mesh) {
         let shift = if is_right(&mesh, mesh.face(h).expect("a corner")) { 100.0 } else { 0.0 };
         let p = mesh.position(mesh.origin(h));
@@ -271,7 +270,10 @@ fn attributes_come_along() {
             let color = fine.color(v).expect("given");
             if way.starts_with("Mid") || way.starts_with("some") {
                 let p = fine.position(v).as_vec3();
-                assert!((DVec3::from(p) - dvec3(color[0].into(), color[1].into(), color[2].into())).length() < 1e-6);
+                assert!(
+                    (DVec3::from(p) - dvec3(color[0].into(), color[1].into(), color[2].into())).length()
+                        < 1e-6
+                );
             }
         }
         for h in corners(&fine) {
@@ -324,13 +326,19 @@ fn with_rules(mesh: &mut Mesh, custom: Rule<f64>) -> Rules {
     let on_edges = some().map(|rule| mesh.add_edge_column(-1.0, rule));
     let on_faces = some().map(|rule| mesh.add_face_column(-1.0, rule));
     for v in mesh.vertices().collect::<Vec<_>>() {
-        on_vertices.iter().for_each(|&c| drop(mesh.set_value(c, v, mesh.position(v).x).expect("live")));
+        for &c in &on_vertices {
+            mesh.set_value(c, v, mesh.position(v).x).expect("live");
+        }
     }
     for e in mesh.edges().collect::<Vec<_>>() {
-        on_edges.iter().for_each(|&c| drop(mesh.set_value(c, e, 1.0).expect("live")));
+        for &c in &on_edges {
+            mesh.set_value(c, e, 1.0).expect("live");
+        }
     }
     for f in mesh.faces().collect::<Vec<_>>() {
-        on_faces.iter().for_each(|&c| drop(mesh.set_value(c, f, 1.0).expect("live")));
+        for &c in &on_faces {
+            mesh.set_value(c, f, 1.0).expect("live");
+        }
     }
     Rules { on_vertices, on_edges, on_faces }
 }
@@ -386,7 +394,7 @@ fn a_custom_rule_is_told_of_vertices_that_move() {
     });
     let mut mesh = shapes::mesh(&shapes::tetrahedron());
     mesh.add_vertex_column(0.0, rule);
-    let mut count = |scheme, event: Event| {
+    let count = |scheme, event: Event| {
         fine(&mesh, scheme, 1);
         let all = std::mem::take(&mut *seen.lock().expect("one thread"));
         all.iter().filter(|e| e.0 == event).count()

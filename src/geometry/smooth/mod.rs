@@ -1,11 +1,13 @@
-//! Smoothing: Laplacian, Taubin, and along the mean curvature (cotangent weights).
+//! Smoothing: Laplacian, Taubin, along the mean curvature (cotangent weights), and implicit.
 
+mod implicit;
 mod weights;
 
 use super::unit_scale;
 use crate::matching::NONE;
 use crate::{Cancelled, Control, Mesh, SetError, VertexKey};
 use glam::DVec3;
+use implicit::Goal;
 use weights::Apexes;
 
 /// What pulls a vertex.
@@ -26,6 +28,31 @@ pub enum SmoothMethod {
     /// Diffusion and Curvature Flow", SIGGRAPH 1999). A weight below zero counts as zero, so every step is a mean; a
     /// triangle without area adds none. Larger faces count as the crate's one rule cuts them at the start; their
     /// diagonals carry no weight.
+    Cotangent,
+    /// The mean of its one-ring as it will be after the step (backward Euler), so that `lambda` may be as large as one
+    /// likes: a step of 10 smooths about as 10 of 1, and none overshoots. It is one linear system an iteration, solved by
+    /// conjugate gradients. Sliding boundary vertices go first, as they do in a step of `lambda` or 1, whichever is less.
+    /// (Desbrun et al., as above. Hestenes and Stiefel, "Methods of Conjugate Gradients for Solving Linear Systems",
+    /// 1952.)
+    Implicit {
+        /// What weighs the one-ring.
+        weights: SmoothWeights,
+        /// The system is solved when the residual is this share of that at the start, in `(0, 1)`.
+        tolerance: f64,
+        /// The most steps of a solution, each O(edges). A smooth shape takes about the square root of `lambda` times
+        /// the digits wanted.
+        max_steps: u32,
+    },
+}
+
+/// What weighs a vertex's one-ring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SmoothWeights {
+    /// All neighbours alike.
+    #[default]
+    Uniform,
+    /// By cotangents, found anew in every iteration, as for [`SmoothMethod::Cotangent`].
     Cotangent,
 }
 
@@ -49,7 +76,7 @@ pub enum Boundary {
 pub struct SmoothOptions<'a> {
     /// What pulls a vertex.
     pub method: SmoothMethod,
-    /// How far a step goes, in `(0, 1]`. 0.5 by default.
+    /// How far a step goes, in `(0, 1]`; any finite number above 0 for [`SmoothMethod::Implicit`]. 0.5 by default.
     pub lambda: f64,
     /// How often; for [`SmoothMethod::Taubin`] an iteration is a step of `lambda` and one of `mu`. 1 by default.
     pub iterations: u32,
@@ -78,9 +105,18 @@ impl Default for SmoothOptions<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SmoothError {
-    /// `lambda` is not in `(0, 1]`.
-    #[error("a lambda of {0} is not above 0 and at most 1")]
+    /// `lambda` is not in `(0, 1]`, or, for an implicit step, not above 0 and finite.
+    #[error("a lambda of {0} is out of range: above 0, and at most 1 unless the step is implicit")]
     BadLambda(f64),
+    /// The tolerance of an implicit step is not in `(0, 1)`.
+    #[error("a tolerance of {0} is not between 0 and 1")]
+    BadTolerance(f64),
+    /// An implicit step was not solved within the steps allowed.
+    #[error("not solved: the residual is still {residual} of that at the start")]
+    NotConverged {
+        /// The residual as a share of that at the start.
+        residual: f64,
+    },
     /// `mu` is not below `-lambda`, or infinite.
     #[error("a mu of {mu} is not below -{lambda}")]
     BadMu {
@@ -103,10 +139,12 @@ pub enum SmoothError {
 impl Mesh {
     /// Moves every vertex towards its neighbours, all at once, several times. Neighbours are the one-ring: those joined
     /// by an edge, whatever the faces' degrees. Carried normals stay as they are:
-    /// [compute](Self::compute_normals) them anew. O(edges) an iteration.
+    /// [compute](Self::compute_normals) them anew. O(edges) an iteration, and for an implicit one
+    /// that times the steps of its solution.
     ///
     /// # Errors
-    /// [`SmoothError`]: `lambda` or `mu` out of range, a dead key, a vertex out of range; when cancelled.
+    /// [`SmoothError`]: `lambda`, `mu` or a tolerance out of range, a dead key, a vertex out of range, an implicit step that
+    /// is not solved; when cancelled. Nothing has changed then.
     ///
     /// # Examples
     /// ```
@@ -125,8 +163,14 @@ impl Mesh {
     /// ```
     pub fn smooth(&mut self, options: SmoothOptions<'_>) -> Result<(), SmoothError> {
         let SmoothOptions { method, lambda, iterations, boundary, locked, mut control } = options;
-        if !(lambda > 0.0 && lambda <= 1.0) {
+        let most = if matches!(method, SmoothMethod::Implicit { .. }) { f64::MAX } else { 1.0 };
+        if !(lambda > 0.0 && lambda <= most) {
             return Err(SmoothError::BadLambda(lambda));
+        }
+        if let SmoothMethod::Implicit { tolerance, .. } = method
+            && !(tolerance > 0.0 && tolerance < 1.0)
+        {
+            return Err(SmoothError::BadTolerance(tolerance));
         }
         if let SmoothMethod::Taubin { mu } = method
             && !(mu < -lambda && mu.is_finite())
@@ -138,11 +182,25 @@ impl Mesh {
         let scale = unit_scale(self.vertices.live().map(|v| self.positions[v as usize]));
         let mut now: Vec<DVec3> = self.positions.iter().map(|&p| p * scale).collect();
         let mut sums = vec![(DVec3::ZERO, 0.0); now.len()];
-        let apexes = matches!(method, SmoothMethod::Cotangent).then(|| Apexes::new(self));
+        let by_cotangents = matches!(
+            method,
+            SmoothMethod::Cotangent | SmoothMethod::Implicit { weights: SmoothWeights::Cotangent, .. }
+        );
+        let apexes = by_cotangents.then(|| Apexes::new(self));
+        let is_free: Vec<bool> = rules.of.iter().map(|&rule| rule == Rule::Free).collect();
         let second = if let SmoothMethod::Taubin { mu } = method { Some(mu) } else { None };
         let steps = f64::from(iterations) * if second.is_some() { 2.0 } else { 1.0 };
         let mut done = 0.0;
         for _ in 0..iterations {
+            if let SmoothMethod::Implicit { tolerance, max_steps, .. } = method {
+                // Without sums only those that slide move.
+                rules.step(&mut now, &sums, lambda.min(1.0));
+                let mut tick = |share: f64| control.report("smooth", (done + share) / steps);
+                let goal = Goal { tolerance, max_steps };
+                implicit::step(self, &mut now, &is_free, apexes.as_ref(), lambda, goal, &mut tick)?;
+                done += 1.0;
+                continue;
+            }
             for factor in [Some(lambda), second].into_iter().flatten() {
                 sums.fill((DVec3::ZERO, 0.0));
                 let mut tick = |share: f64| control.report("smooth", (done + share) / steps);

@@ -1,7 +1,7 @@
 //! Midpoint subdivision of some faces; neighbours are closed so that no vertex lies on an edge.
 
-use super::dense::Dense;
 use super::carry::{self, Spot};
+use super::dense::Dense;
 use super::{Meter, SubdivideError, build, followed};
 use crate::column::Columns;
 use crate::matching::NONE;
@@ -44,7 +44,7 @@ pub(super) fn subdivide(
         (dense, selected) = (next, next_selected);
     }
     control.report("build", 0.9)?;
-    Ok((build(dense, columns)?, maps, changed))
+    Ok((build(dense)?, maps, changed))
 }
 
 /// One level.
