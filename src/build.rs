@@ -219,7 +219,7 @@ impl Linking {
     }
 
     /// The next face: its vertices, and for each corner twice its edge, plus one unless it is the edge's first use.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn face(&mut self, corners: &[u32], uses: &[u32]) {
         let mesh = &mut self.mesh;
         let f = mesh.face_halfedge.len() as u32;

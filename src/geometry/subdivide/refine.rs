@@ -250,7 +250,7 @@ trait Sink {
 }
 
 impl Sink for Linking {
-    #[inline]
+    #[inline(always)]
     fn face(&mut self, corners: &[u32], uses: &[u32]) {
         Linking::face(self, corners, uses);
     }
@@ -288,7 +288,7 @@ impl Lists {
 }
 
 impl Sink for Lists {
-    #[inline]
+    #[inline(always)]
     fn face(&mut self, corners: &[u32], uses: &[u32]) {
         self.corners.extend_from_slice(corners);
         self.use_of.extend_from_slice(uses);
