@@ -1,6 +1,8 @@
 //! Smoothing: meaning, shrinkage, boundaries, refusals.
 
 mod igl;
+#[path = "tutorial/naive.rs"]
+mod naive;
 mod shapes;
 
 use igl::Igl;
@@ -16,35 +18,6 @@ fn smooth(mesh: &mut Mesh, options: SmoothOptions<'_>) {
 
 fn positions(mesh: &Mesh) -> Vec<DVec3> {
     mesh.to_indexed().positions().to_vec()
-}
-
-/// The tutorial's loop, on a vertex pool: neighbours from the faces, all moved at once.
-fn naive(pool: &IndexedMesh, lambda: f64, iterations: u32, stays: impl Fn(usize) -> bool) -> Vec<DVec3> {
-    let mut positions = pool.positions().to_vec();
-    for _ in 0..iterations {
-        let mut moved = positions.clone();
-        for v in 0..positions.len() {
-            let mut neighbours: Vec<u32> = Vec::new();
-            for f in pool.polygons().iter() {
-                let n = f.len();
-                for i in 0..n {
-                    if f[i] as usize == v {
-                        for w in [f[(i + 1) % n], f[(i + n - 1) % n]] {
-                            if !neighbours.contains(&w) {
-                                neighbours.push(w);
-                            }
-                        }
-                    }
-                }
-            }
-            if !neighbours.is_empty() && !stays(v) {
-                let sum: DVec3 = neighbours.iter().map(|&w| positions[w as usize]).sum();
-                moved[v] = positions[v] + (sum / neighbours.len() as f64 - positions[v]) * lambda;
-            }
-        }
-        positions = moved;
-    }
-    positions
 }
 
 fn unit_sphere(levels: u32) -> Mesh {
@@ -66,7 +39,7 @@ fn laplacian_smoothing_equals_the_tutorials_loop_on_any_faces() {
                 let mut ours = mesh.clone();
                 smooth(&mut ours, SmoothOptions { lambda: 0.7, iterations, boundary, ..Default::default() });
                 let on_boundary: Vec<bool> = mesh.vertices().map(|v| mesh.is_boundary_vertex(v)).collect();
-                let expected = naive(&pool, 0.7, iterations, |v| !free && on_boundary[v]);
+                let expected = naive::laplacian(&(&pool).into(), 0.7, iterations, |v| !free && on_boundary[v]);
                 for (p, q) in positions(&ours).iter().zip(expected) {
                     assert!(p.distance(q) < 1e-12, "{p} {q}");
                 }
