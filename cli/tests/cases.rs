@@ -126,8 +126,10 @@ fn every_measured_case_is_answered_rightly_by_the_program() {
 
         let (code, answer) = json(&dir, &["volume", "a.obj"]);
         assert_eq!((code, answer["volume"].as_f64()), (i32::from(case.volume.is_none()), case.volume), "{name}");
+        let told = &answer["import"]["counts"];
         let flips = if name == "mixed" { json!(4) } else { Value::Null };
-        assert_eq!(answer["import"]["counts"]["flipped_face"], flips, "{name}: what the import changed is told");
+        assert!(told["flipped_face"] == flips || name == "moebius", "{name}: what the import changed is told");
+        assert_eq!(told["cut_edge"].is_null(), name != "moebius", "{name}: {told}");
 
         let (code, answer) = json(&dir, &["naked-edges", "a.obj"]);
         let loops = answer["loops"].as_array().expect("loops");

@@ -131,7 +131,7 @@ fn what_is_written_is_what_the_commands_name_says() {
     assert_eq!(volume(&["transform", "--translate", "-7,0,0"]), Some(1.0));
     assert_eq!(volume(&["subdivide", "--scheme", "midpoint", "--levels", "2"]), Some(1.0));
     assert_eq!(facts(&["unweld", "--angle", "45"])["components"], 6);
-    assert_eq!(facts(&["reduce", "--faces", "8"])["faces"], 8);
+    assert_eq!(facts(&["reduce", "--faces", "8"])["faces"], 6, "few enough: the quads stay");
     assert_eq!(facts(&["collapse", "--edge", "0,1"])["vertices"], 7);
     let smooth = volume(&["smooth", "--iterations", "1", "--lambda", "1"]).expect("closed");
     assert!((smooth - 1.0 / 27.0).abs() < 1e-12);

@@ -37,7 +37,7 @@ fn reduced(mesh: &mut Mesh, target: ReduceTarget, control: Control<'_>) -> Resul
     Ok(())
 }
 
-const CALLS: [(&str, Call); 19] = [
+const CALLS: [(&str, Call); 20] = [
     ("weld", |m, control| Ok(drop(m.weld(WeldOptions { tolerance: 1e-3, control })?))),
     ("weld exactly", |m, control| Ok(drop(m.weld(WeldOptions { tolerance: 0.0, control })?))),
     ("unweld", |m, control| Ok(drop(m.unweld(UnweldOptions { degrees: 10.0, control })?))),
@@ -49,6 +49,7 @@ const CALLS: [(&str, Call); 19] = [
     ("Laplacian", |m, c| smoothed(m, SmoothMethod::Laplacian, c)),
     ("Taubin", |m, c| smoothed(m, SmoothMethod::Taubin { mu: -0.53 }, c)),
     ("cotangent", |m, c| smoothed(m, SmoothMethod::Cotangent, c)),
+    ("implicit", |m, c| smoothed(m, SmoothMethod::Implicit, c)),
     ("reduce to faces", |m, c| reduced(m, ReduceTarget::Faces(40), c)),
     ("reduce by ratio", |m, c| reduced(m, ReduceTarget::Ratio(0.1), c)),
     ("reduce within an error", |m, c| reduced(m, ReduceTarget::MaxError(0.05), c)),

@@ -59,7 +59,7 @@ const INF: f64 = f64::INFINITY;
 /// The operation, what is wrong with its input, the error.
 type Row = (&'static str, &'static str, &'static str, fn(&mut Mesh) -> Answer);
 
-const ROWS: [Row; 64] = [
+const ROWS: [Row; 65] = [
     ("mesh", "a position that is not finite", "IndexedError", |m| {
         let (mut points, faces, _) = m.to_indexed().into_parts();
         points[3].y = INF;
@@ -127,6 +127,10 @@ const ROWS: [Row; 64] = [
     }),
     ("smooth", "lambda out of range", "BadLambda", |m| {
         all([0.0, -0.5, 1.01, NAN, INF].map(|lambda| smooth(m, SmoothOptions { lambda, ..Default::default() })))
+    }),
+    ("smooth", "lambda of an implicit step out of range", "BadLambda", |m| {
+        let method = SmoothMethod::Implicit;
+        all([0.0, -0.5, 10001.0, NAN, INF].map(|lambda| smooth(m, SmoothOptions { method, lambda, ..Default::default() })))
     }),
     ("smooth", "mu not below -lambda", "BadMu", |m| {
         all([-0.5, 0.3, NAN, -INF].map(|mu| {
