@@ -12,3 +12,16 @@ pub(crate) fn each<T: Sync, R: Send>(questions: &[T], answer: impl Fn(&T) -> R +
 pub(crate) fn each<T: Sync, R: Send>(questions: &[T], answer: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     questions.iter().map(answer).collect()
 }
+
+/// The result of every piece of work, of which each is worth a thread.
+#[cfg(feature = "rayon")]
+pub(crate) fn each_piece<T: Sync, R: Send>(pieces: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    use rayon::prelude::*;
+    pieces.par_iter().map(work).collect()
+}
+
+/// The result of every piece of work.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn each_piece<T: Sync, R: Send>(pieces: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    pieces.iter().map(work).collect()
+}

@@ -181,6 +181,12 @@ impl Tree {
         self.triangles[triangle as usize].map(|v| self.points[(v & !CUT) as usize])
     }
 
+    /// A box in the terms of the nodes': whatever meets it meets their boxes.
+    pub(crate) fn boxed(&self, low: DVec3, high: DVec3) -> ([f32; 3], [f32; 3]) {
+        let [low, high] = [low, high].map(|p| (p - self.center).to_array());
+        (low.map(|x| rounded_down(x - SLOP)), high.map(|x| rounded_up(x + SLOP)))
+    }
+
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
