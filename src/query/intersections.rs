@@ -74,8 +74,11 @@ impl Mesh {
         &self,
         mut options: SelfIntersectionOptions<'_>,
     ) -> Result<SelfIntersections, Cancelled> {
-        options.control.report("index", 0.0)?;
-        self.index().self_intersections(options)
+        let index = options.control.part(0.0, 0.5, |control| self.index_with(control))?;
+        let max_listed = options.max_listed;
+        options.control.part(0.5, 1.0, |control| {
+            index.self_intersections(SelfIntersectionOptions { max_listed, control })
+        })
     }
 }
 
@@ -347,11 +350,8 @@ fn meets(node: &Node, (low, high): &([f32; 3], [f32; 3])) -> u32 {
             apart[i] |= (lows[i] > high[axis]) | (highs[i] < low[axis]);
         }
     }
-    let mut met = 0;
-    for i in 0..WIDTH {
-        met |= u32::from(!apart[i] & (node.count[i] > 0)) << i;
-    }
-    met
+    let is_met = |i: usize| !apart[i] & (node.count[i] > 0);
+    (0..WIDTH).fold(0, |met, i| met | u32::from(is_met(i)) << i)
 }
 
 /// Leaves of each pair of faces what is strongest, and of that what was found first.

@@ -6,6 +6,7 @@ mod cast;
 mod closest;
 mod contacts;
 mod contains;
+mod coplanar;
 mod exact;
 mod facet;
 mod index;

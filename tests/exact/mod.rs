@@ -3,6 +3,9 @@
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+#[path = "lines.rs"]
+pub(crate) mod lines;
+
 use meshwright::glam::DVec3;
 use meshwright::{IndexedMesh, Mesh};
 
@@ -22,6 +25,9 @@ impl Point {
     }
 
     fn reduced(self) -> Self {
+        if self.d < 1 << 20 && self.n.iter().all(|x| x.abs() < 1 << 20) {
+            return self;
+        }
         let divisor = self.n.into_iter().fold(self.d, gcd);
         Self { n: self.n.map(|x| x / divisor), d: self.d / divisor }
     }
@@ -212,8 +218,7 @@ pub(crate) fn meet(s: &Triangle, t: &Triangle) -> Option<u8> {
 }
 
 /// All pairs of faces that meet in more than edges, by all pairs of triangles: faces and the strongest contact.
-pub(crate) fn self_intersections(mesh: &Mesh) -> Vec<([usize; 2], u8)> {
-    let all = triangles(mesh);
+pub(crate) fn self_intersections(all: &[Triangle]) -> Vec<([usize; 2], u8)> {
     let mut found = Vec::new();
     for (i, s) in all.iter().enumerate() {
         for t in all[i + 1..].iter().filter(|t| t.face != s.face) {
