@@ -50,7 +50,7 @@ mod walk;
 pub mod walking {}
 
 pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
-pub use build::{BuildDefect, BuildError};
+pub use build::{BuildDefect, BuildError, BuildWithError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
 pub use control::{Cancelled, Control, Progress};
@@ -85,7 +85,9 @@ pub use report::{
     Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
-pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use topology::{
+    EdgeRef, NakedEdges, NotOrientable, Topology, UnifyWithError, unify_winding, unify_winding_with,
+};
 pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 
