@@ -2,6 +2,7 @@
 
 use super::ring::{Ears, Ring};
 use crate::{Cancelled, Control};
+use glam::DVec3;
 
 /// How much squared sides count beside the area, so that among the many triangulations of a flat hole one of good shape
 /// is taken.
@@ -22,8 +23,8 @@ const IMPOSSIBLE: Weight = Weight { flat: u32::MAX, size: f64::INFINITY };
 
 impl Weight {
     /// Of one triangle of a ring.
-    fn of(ring: &Ring, corners: [u32; 3]) -> Self {
-        let [a, b, c] = corners.map(|i| ring.points[i as usize]);
+    #[inline]
+    fn of(ring: &Ring, [a, b, c]: [DVec3; 3]) -> Self {
         let t = ring.triangle(a, b, c);
         Self { flat: u32::from(t.is_flat), size: t.area + SQUARES * t.squares }
     }
@@ -51,6 +52,7 @@ pub(super) fn lightest(
     if n < 3 {
         return Ok(None);
     }
+    let points: Vec<DVec3> = corners.iter().map(|&i| ring.points[i as usize]).collect();
     // Both ways round, so that the two rows that are read lie together.
     let mut weights = vec![IMPOSSIBLE; n * n];
     let mut apexes = vec![0u32; n * n];
@@ -66,17 +68,18 @@ pub(super) fn lightest(
             }
             let (from_i, from_j) = (&weights[i * n..][..n], &weights[j * n..][..n]);
             let (mut best, mut apex) = (IMPOSSIBLE, 0);
-            for k in i + 1..j {
-                let (left, right) = (from_i[k], from_j[k]);
+            let (a, c) = (points[i], points[j]);
+            let apart = points[i + 1..j].iter().zip(&from_i[i + 1..j]).zip(&from_j[i + 1..j]);
+            for (k, ((&b, &left), &right)) in (i as u32 + 1..).zip(apart) {
                 if !left.is_possible() || !right.is_possible() {
                     continue;
                 }
                 let parts = left.plus(right);
                 // A triangle weighs nothing at the least.
                 if parts < best {
-                    let whole = parts.plus(Weight::of(ring, [corners[i], corners[k], corners[j]]));
+                    let whole = parts.plus(Weight::of(ring, [a, b, c]));
                     if whole < best {
-                        (best, apex) = (whole, k as u32);
+                        (best, apex) = (whole, k);
                     }
                 }
             }
@@ -133,7 +136,7 @@ mod tests {
     use glam::dvec3;
 
     fn weight(ring: &Ring, ears: &[[u32; 3]]) -> Weight {
-        ears.iter().fold(NOTHING, |sum, &t| sum.plus(Weight::of(ring, t)))
+        ears.iter().fold(NOTHING, |sum, &t| sum.plus(Weight::of(ring, t.map(|i| ring.points[i as usize]))))
     }
 
     /// All triangulations of the corners `i..=j`.

@@ -102,7 +102,7 @@ impl Mesh {
     ///   coordinates, and user data is the default: what should be there cannot be known.
     /// - Checkpoints, columns and the record of changes see all of it: a hole is filled with one face, which is then split.
     ///
-    /// O(mesh) and what each loop takes: O(n^3) up to `exact_edges` (0.1 s for 500), O(n log n) on longer loops from life.
+    /// O(mesh) and what each loop takes: O(n^3) up to `exact_edges` (0.2 s for 500), O(n log n) on longer loops from life.
     ///
     /// # Errors
     /// [`FillHolesError`]; nothing has changed then. A hole that stays open is no error but in the account.
