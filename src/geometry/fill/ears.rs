@@ -219,6 +219,8 @@ mod tests {
             assert_eq!(ears.len(), n - 2);
             let whole = ring.double_area_vector().length() / 2.0;
             assert!((ring.area_of(&ears) / whole - 1.0).abs() < 1e-9, "{n}");
+            let turned = ears.iter().filter(|t| turn(t.map(|i| ring.points[i as usize].truncate())) <= 0.0);
+            assert_eq!(turned.count(), 0, "{n}");
         }
     }
 

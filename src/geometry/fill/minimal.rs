@@ -4,9 +4,9 @@ use super::ring::{Ears, Ring};
 use crate::{Cancelled, Control};
 use glam::DVec3;
 
-/// How much squared sides count beside the area, so that among the many triangulations of a flat hole one of good shape
-/// is taken.
-const SQUARES: f64 = 1e-6;
+/// How much squared sides count beside the area, so that among the many triangulations of a flat hole one of good shape is
+/// taken. More than rounding leaves of equal areas, and no more than what counts as flat: else folds would pay.
+const SQUARES: f64 = 1e-10;
 
 /// Triangles weighed between two questions to the hook.
 const BETWEEN: usize = 1 << 24;

@@ -87,7 +87,7 @@ impl Mesh {
     /// Fills all holes: along each boundary loop the triangles of least area, or for long loops of little.
     ///
     /// - Of all triangulations of a loop without new vertices the one is taken that has the fewest triangles without area,
-    ///   and among those the least area plus a millionth of the squared sides, which decides where the hole is flat. (Barequet
+    ///   and among those the least area plus 1e-10 of the squared sides, which decides where the hole is flat. (Barequet
     ///   and Sharir, 1995; Liepa, "Filling holes in meshes", 2003, whose weight by the worst angle cannot be minimised
     ///   exactly by this method.) Above [`exact_edges`](FillHolesOptions::exact_edges) edges ears are cut, the shortest
     ///   diagonal first, seen along the loop's area vector. Whether the filler passes through other faces is not asked.
