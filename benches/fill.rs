@@ -67,8 +67,36 @@ fn quality(mesh: &Mesh, faces: &[FaceKey]) -> (f64, f64) {
     (all, shapes / all)
 }
 
+/// A torus of a million triangles with every twentieth face gone, or all of its quads apart.
+fn many(kind: &str) -> Result<Mesh, Box<dyn Error>> {
+    let torus = shapes::torus(1000, 500);
+    if kind == "sheets" {
+        let soup = shapes::unwelded(&torus);
+        return Ok(Mesh::build(&IndexedMesh::new(soup.positions, soup.polygons)?)?);
+    }
+    let mut mesh = Mesh::build(&shapes::fanned(&torus))?;
+    let mut noise = Noise(1);
+    for f in mesh.faces().collect::<Vec<_>>() {
+        if noise.below(20) == 0 {
+            // Refused where a vertex would get two fans.
+            let _ = mesh.remove_face(f);
+        }
+    }
+    Ok(mesh)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let only = std::env::args().skip(1).find(|a| a != "--bench");
+    for kind in ["many", "sheets"] {
+        if only.as_ref().is_some_and(|k| k != kind) {
+            continue;
+        }
+        let mut mesh = many(kind)?;
+        let start = ThreadTime::now();
+        let account = mesh.fill_holes(FillHolesOptions::default())?;
+        let (filled, refused) = (account.filled.len(), account.refused.len());
+        println!("{kind}\t{:.3} s\t{filled} filled, {refused} refused", start.elapsed().as_secs_f64());
+    }
     for kind in ["flat", "wavy", "rough", "saw", "random", "spiral", "crossing"] {
         if only.as_ref().is_some_and(|k| k != kind) {
             continue;

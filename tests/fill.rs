@@ -525,6 +525,18 @@ fn scales_near_the_ends_of_the_numbers_do_no_harm() {
     assert_eq!(Mesh::default().fill_holes(options()), Ok(FilledHoles::default()));
 }
 
+#[cfg(feature = "serde")]
+#[test]
+fn the_account_serialises() {
+    let mut mesh = without(&grid(4), |f| f == 11);
+    let account = filled(&mut mesh, options());
+    let json = serde_json::to_value(&account).expect("serialises");
+    assert_eq!(json["filled"][0]["edges"], 3);
+    assert_eq!(json["filled"][0]["method"], "one_face");
+    assert_eq!(json["refused"][0]["vertices"].as_array().map(Vec::len), Some(16));
+    assert!(json["refused"][0]["reason"]["sheet"].as_f64() > Some(0.8));
+}
+
 /// Removes random faces; on a mesh, so that every vertex keeps one fan.
 fn riddle(mesh: &mut Mesh, seed: u64, share: u32) {
     let mut noise = Noise(seed);

@@ -247,4 +247,22 @@ mod tests {
         });
         assert_eq!(flat.count(), 0);
     }
+
+    #[test]
+    fn chords_that_are_edges_are_not_cut() {
+        let mut ring = ring_of(star(400, 0.2));
+        let pairs = (0..400u32).flat_map(|i| (2..40).map(move |d| [i, i + d]));
+        ring.chords = pairs.filter(|[i, j]| *j < 400 && (i * 31 + j * 17) % 3 == 0).collect();
+        let ears = clip_all(&ring);
+        assert_eq!(ears.len(), 398);
+        assert!(ears[..397].iter().all(|&[p, _, q]| !ring.is_chord(p, q)));
+    }
+
+    #[test]
+    fn a_loop_that_cannot_be_cut_is_given_up() {
+        let mut ring = ring_of(star(2000, 0.2));
+        ring.chords = (0..1998u32).map(|i| [i, i + 2]).chain([[0, 1998], [1, 1999]]).collect();
+        ring.chords.sort_unstable();
+        assert_eq!(clip(&ring, &mut Pace::new(&mut Control::none())), Ok(None));
+    }
 }

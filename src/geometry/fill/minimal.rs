@@ -195,4 +195,25 @@ mod tests {
         let ears = lightest_of(&ring).unwrap();
         assert_eq!(weight(&ring, &ears).flat, 0);
     }
+
+    #[test]
+    fn a_flat_hole_gets_good_triangles_though_its_corners_are_rounded_to_f32() {
+        let n = 60;
+        let rim = |i: usize| {
+            let (s, c) = (i as f64 / n as f64 * std::f64::consts::TAU).sin_cos();
+            dvec3(1.3 + c, s * 0.8 - c * 0.3, 0.4 * s + 0.2 * c)
+        };
+        let exact = ring_of((0..n).map(rim).collect());
+        let rounded = ring_of((0..n).map(|i| rim(i).as_vec3().as_dvec3()).collect());
+        let squares = |ring: &Ring| {
+            let ears = lightest_of(ring).unwrap();
+            let each = ears.iter().map(|t| {
+                let [a, b, c] = t.map(|i| ring.points[i as usize]);
+                ring.triangle(a, b, c).squares
+            });
+            each.sum::<f64>()
+        };
+        let ratio = squares(&rounded) / squares(&exact);
+        assert!((0.99..1.2).contains(&ratio), "{ratio}");
+    }
 }
