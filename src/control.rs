@@ -59,6 +59,15 @@ impl<'a> Control<'a> {
         let answer = self.hook.as_mut().map_or(ControlFlow::Continue(()), |hook| hook(progress));
         if answer.is_break() { Err(Cancelled) } else { Ok(()) }
     }
+
+    /// Runs a call that is a part of the whole: from the first fraction to the second.
+    pub(crate) fn part<T>(&mut self, from: f64, to: f64, call: impl FnOnce(Control<'_>) -> T) -> T {
+        let mut hook = |p: Progress| match self.report(p.stage, from + (to - from) * p.fraction) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(Cancelled) => ControlFlow::Break(()),
+        };
+        call(Control::new(&mut hook))
+    }
 }
 
 impl fmt::Debug for Control<'_> {

@@ -80,9 +80,9 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use query::{
-    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, OutwardError,
-    OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, Side, SolidIndex, TurnedOutward,
-    orient_outward,
+    ClosestOptions, ClosestPoint, Contact, Crossing, FacePair, Feature, MassProperties, MeshIndex, Nearest,
+    OutwardError, OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, SelfIntersectionOptions,
+    SelfIntersections, Side, SolidIndex, TurnedOutward, orient_outward,
 };
 pub use report::{
     Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
