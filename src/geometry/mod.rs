@@ -5,6 +5,7 @@ pub(crate) mod deform;
 pub(crate) mod measure;
 pub(crate) mod normals;
 pub(crate) mod reduce;
+pub(crate) mod slivers;
 pub(crate) mod smooth;
 pub(crate) mod subdivide;
 pub(crate) mod transform;
