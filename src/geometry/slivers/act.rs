@@ -137,7 +137,7 @@ impl Run {
         }
         let edge = self.mesh.edges.key(h >> 1);
         let split = self.mesh.split_edge_and_faces(edge, on_edge(s)).map_err(|_| SliverObstacle::Topology)?;
-        let born = split.cuts.iter().filter_map(|cut| self.mesh.face_slot(cut.face)).collect();
+        let born = split.cuts.iter().map(|cut| cut.face).collect();
         let short = self.mesh.find_halfedge(split.vertex, self.mesh.vertices.key(c));
         let collapsed = short.and_then(|short| self.mesh.collapse_into_target(short).ok());
         debug_assert!(collapsed.is_some(), "the merge was found legal");
@@ -191,7 +191,7 @@ impl Run {
         if moved > self.gauge.tolerance && self.stage < 2 {
             return Err(SliverObstacle::Moves);
         }
-        let beside: Vec<u32> = inner.iter().map(|&h| self.mesh.face[h as usize ^ 1]).collect();
+        let beside = inner.iter().map(|&h| self.mesh.faces.key(self.mesh.face[h as usize ^ 1])).collect();
         let key = self.mesh.faces.key(f);
         let removed = self.mesh.remove_face(key).map_err(|refusal| match refusal {
             RemoveFaceError::Pinch(_) => SliverObstacle::Pinch,
@@ -229,16 +229,15 @@ impl Run {
             }
         }
         let whole =
-            |changed| Done { action: SliverAction::Cut, moved: 0.0, changed, born: vec![f], vertex: None };
+            |changed| Done { action: SliverAction::Cut, moved: 0.0, changed, born: Vec::new(), vertex: None };
         let is_bad = best.is_none_or(|b| b.0);
         if is_bad && let Ok(cut) = self.mesh.triangulate_face(key) {
-            let born = cut.cuts.iter().filter_map(|c| self.mesh.face_slot(c.face)).chain([f]).collect();
+            let born = cut.cuts.iter().map(|c| c.face).collect();
             return Ok(Done { born, ..whole(vec![key]) });
         }
         let (_, _, ends) = best.ok_or(SliverObstacle::Topology)?;
         let [from, to] = ends.map(|i| self.mesh.halfedge_key(halfedges[i]));
         let cut = self.mesh.split_face(from, to).map_err(|_| SliverObstacle::Topology)?;
-        let born = self.mesh.face_slot(cut.face).into_iter().chain([f]).collect();
-        Ok(Done { born, ..whole(vec![key]) })
+        Ok(Done { born: vec![cut.face], ..whole(vec![key]) })
     }
 }

@@ -16,7 +16,7 @@ pub(super) struct Done {
     /// The faces that were there before and changed.
     pub(super) changed: Vec<FaceKey>,
     /// Faces that are new, or have something new beside them.
-    pub(super) born: Vec<u32>,
+    pub(super) born: Vec<FaceKey>,
     /// The vertex around which it happened.
     pub(super) vertex: Option<u32>,
 }
@@ -170,8 +170,10 @@ impl Run {
                 self.account.resolved.push(ResolvedSliver { sliver, action: done.action, moved });
             }
         }
-        for f in done.born {
-            self.put(f);
+        for key in done.born {
+            if let Some(f) = self.mesh.face_slot(key) {
+                self.put(f);
+            }
         }
         // Those around may be legal now; around a heavy vertex they wait for the next sweep.
         if let Some(v) = done.vertex
