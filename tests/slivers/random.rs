@@ -53,7 +53,7 @@ fn shapes_of_all_kinds_are_resolved() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(1_000))]
 
     #[test]
     fn slivers_put_into_closed_meshes_are_all_resolved(shape in 0usize..7, count in 1usize..40, seed in any::<u64>()) {

@@ -87,11 +87,14 @@ impl Run {
 
     /// Cuts a larger face into triangles.
     fn cut_up(&mut self, f: FaceKey) -> bool {
-        self.may_split() && self.mesh.triangulate_face(f).is_ok_and(|cut| !cut.cuts.is_empty()) && {
-            // They may be slivers.
-            self.look_around(f);
-            self.note_split()
+        if !self.may_split() {
+            return false;
         }
+        let Ok(cut) = self.mesh.triangulate_face(f) else { return false };
+        let parts = cut.cuts.iter().map(|c| c.face).chain([f]);
+        // They may be slivers.
+        parts.for_each(|part| self.look_at(part));
+        !cut.cuts.is_empty() && self.note_split()
     }
 
     /// Puts a vertex in the middle of a triangle that is and stays no sliver.

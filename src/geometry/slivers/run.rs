@@ -107,9 +107,7 @@ impl Run {
     fn put_all(&mut self) {
         let all: Vec<FaceKey> = self.open.keys().copied().collect();
         for key in all {
-            if let Some(f) = self.mesh.face_slot(key) {
-                self.put(f);
-            }
+            self.look_at(key);
         }
     }
 
@@ -133,16 +131,10 @@ impl Run {
         self.queue.push(Reverse((place.0, place.1, key)));
     }
 
-    /// Looks at a face and all around its corners.
-    pub(super) fn look_around(&mut self, key: FaceKey) {
-        let Some(f) = self.mesh.face_slot(key) else { return };
-        let corners: Vec<u32> = self
-            .mesh
-            .loop_slots(self.mesh.face_halfedge[f as usize])
-            .map(|h| self.mesh.origin[h as usize])
-            .collect();
-        for v in corners {
-            self.put_faces_at(v);
+    /// Looks at a face that is new.
+    pub(super) fn look_at(&mut self, key: FaceKey) {
+        if let Some(f) = self.mesh.face_slot(key) {
+            self.put(f);
         }
     }
 
@@ -171,9 +163,7 @@ impl Run {
             }
         }
         for key in done.born {
-            if let Some(f) = self.mesh.face_slot(key) {
-                self.put(f);
-            }
+            self.look_at(key);
         }
         // Those around may be legal now; around a heavy vertex they wait for the next sweep.
         if let Some(v) = done.vertex
