@@ -1,19 +1,34 @@
 //! Every model of the corpus.
 
 use super::*;
+use meshwright::SliverObstacle;
 use meshwright::cleanup::{CleanOptions, clean};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
 #[test]
 fn models_of_the_corpus_stay_valid_and_what_is_left_is_named() {
-    let Some(rows) = corpus::rows() else { return };
+    let left = on_models(|mesh| mesh.propose_sliver_tolerance());
+    // Triangles without area that are a whole component each.
+    assert!(left.keys().all(|&o| o == SliverObstacle::WholeComponent), "{left:?}");
+}
+
+#[test]
+fn a_tolerance_far_too_large_does_models_of_the_corpus_no_harm() {
+    for share in [1e-6, 1e-4, 1e-2] {
+        on_models(|mesh| mesh.bounds().map_or(0.0, |b| b.min.distance(b.max) * share));
+    }
+}
+
+/// Why slivers are left, and how many.
+fn on_models(tolerance: impl Fn(&Mesh) -> f64) -> BTreeMap<SliverObstacle, usize> {
+    let Some(rows) = corpus::rows() else { return BTreeMap::new() };
     let (mut found, mut left, mut whole) = (0, BTreeMap::new(), 0);
     for row in rows.iter().filter(|r| r.is_readable() && r.count("faces") < 400_000) {
         let Ok(soup) = row.load() else { continue };
         let mut mesh = clean(&soup, CleanOptions::default()).expect("a soup is never refused").value;
         let (before, was_closed) = (facts(&mesh), mesh.is_closed());
-        let tolerance = mesh.propose_sliver_tolerance();
+        let tolerance = tolerance(&mesh);
         let start = Instant::now();
         let account = mesh.resolve_slivers(SliverOptions::new(tolerance)).expect("a good tolerance");
         let took = start.elapsed().as_secs_f64();
@@ -48,4 +63,5 @@ fn models_of_the_corpus_stay_valid_and_what_is_left_is_named() {
         );
     }
     println!("{whole} models with {found} slivers; left: {left:?}");
+    left
 }

@@ -206,38 +206,64 @@ impl Run {
 
     /// Cuts a larger face: along one diagonal that leaves no sliver, or into triangles.
     fn cut(&mut self, f: u32) -> Result<Done, SliverObstacle> {
-        let halfedges: Vec<u32> = self.mesh.loop_slots(self.mesh.face_halfedge[f as usize]).collect();
+        let key = self.mesh.faces.key(f);
         let corners = self.gauge.corners(&self.mesh, f);
         let normal = self.gauge.look(&corners).normal;
-        let n = corners.len();
-        let key = self.mesh.faces.key(f);
-        let mut best: Option<(bool, u64, [usize; 2])> = None;
-        if n <= MANY_CORNERS {
-            for (i, j) in (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j))) {
-                if i == 0 && j + 1 == n || self.mesh.find_slot(corners[i].0, corners[j].0).is_some() {
-                    continue;
-                }
-                let one: Corners = corners[i..=j].iter().copied().collect();
-                let other: Corners = corners[j..].iter().chain(&corners[..=i]).copied().collect();
-                let is_bad = [one, other].iter().any(|part| {
-                    let look = self.gauge.look(part);
-                    look.fault.is_some() || look.normal.dot(normal) < 0.0
-                });
-                let length = corners[i].1.distance(corners[j].1).to_bits();
-                let way = (is_bad, length, [i, j]);
-                best = Some(best.map_or(way, |b| b.min(way)));
+        let way = if corners.len() <= MANY_CORNERS { self.best_diagonal(&corners, normal) } else { None };
+        let done =
+            |born| Done { action: SliverAction::Cut, moved: 0.0, changed: vec![key], born, vertex: None };
+        if way.is_none_or(|w| w.0 > Leaves::None) {
+            if let Ok(cut) = self.mesh.triangulate_face(key) {
+                return Ok(done(cut.cuts.iter().map(|c| c.face).collect()));
+            }
+            if normal != DVec3::ZERO && self.poke(key) {
+                return Ok(done(Vec::new()));
             }
         }
-        let whole =
-            |changed| Done { action: SliverAction::Cut, moved: 0.0, changed, born: Vec::new(), vertex: None };
-        let is_bad = best.is_none_or(|b| b.0);
-        if is_bad && let Ok(cut) = self.mesh.triangulate_face(key) {
-            let born = cut.cuts.iter().map(|c| c.face).collect();
-            return Ok(Done { born, ..whole(vec![key]) });
-        }
-        let (_, _, ends) = best.ok_or(SliverObstacle::Topology)?;
-        let [from, to] = ends.map(|i| self.mesh.halfedge_key(halfedges[i]));
+        // A cap cut off a face that has height would go back into it.
+        let way = way.filter(|w| w.0 < Leaves::Triangle || normal == DVec3::ZERO);
+        let (_, _, ends) = way.ok_or(SliverObstacle::Topology)?;
+        let first = self.mesh.face_halfedge[f as usize];
+        let nth = |i: usize| self.mesh.loop_slots(first).nth(i).unwrap_or(first);
+        let [from, to] = ends.map(|i| self.mesh.halfedge_key(nth(i)));
         let cut = self.mesh.split_face(from, to).map_err(|_| SliverObstacle::Topology)?;
-        Ok(Done { born: vec![cut.face], ..whole(vec![key]) })
+        Ok(done(vec![cut.face]))
     }
+
+    /// The diagonal that leaves the least to do, the shortest of several.
+    fn best_diagonal(&mut self, corners: &Corners, normal: DVec3) -> Option<(Leaves, u64, [usize; 2])> {
+        let n = corners.len();
+        let mut best: Option<(Leaves, u64, [usize; 2])> = None;
+        for (i, j) in (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j))) {
+            if i == 0 && j + 1 == n || self.mesh.find_slot(corners[i].0, corners[j].0).is_some() {
+                continue;
+            }
+            let one: Corners = corners[i..=j].iter().copied().collect();
+            let other: Corners = corners[j..].iter().chain(&corners[..=i]).copied().collect();
+            let leaves = [one, other].map(|part| {
+                let look = self.gauge.look(&part);
+                if look.fault.is_none() && look.normal.dot(normal) >= 0.0 {
+                    Leaves::None
+                } else if part.len() > 3 {
+                    Leaves::Larger
+                } else {
+                    Leaves::Triangle
+                }
+            });
+            let leaves = leaves[0].max(leaves[1]);
+            let way = (leaves, corners[i].1.distance(corners[j].1).to_bits(), [i, j]);
+            best = Some(best.map_or(way, |b| b.min(way)));
+        }
+        best
+    }
+}
+
+/// The worst that a cut leaves.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Leaves {
+    None,
+    /// A larger face that is to be cut again.
+    Larger,
+    /// A triangle that is a sliver, or turned over.
+    Triangle,
 }
