@@ -60,13 +60,13 @@ impl<'a> Control<'a> {
         if answer.is_break() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Runs a part of the call, which reports shares of its own: 0 and 1 there are `from` and `to` of the whole.
-    pub(crate) fn part<T>(&mut self, from: f64, to: f64, run: impl FnOnce(&mut Control<'_>) -> T) -> T {
+    /// Runs a call that is a part of the whole: from the first fraction to the second.
+    pub(crate) fn part<T>(&mut self, from: f64, to: f64, call: impl FnOnce(Control<'_>) -> T) -> T {
         let mut hook = |p: Progress| match self.report(p.stage, from + (to - from) * p.fraction) {
             Ok(()) => ControlFlow::Continue(()),
             Err(Cancelled) => ControlFlow::Break(()),
         };
-        run(&mut Control::new(&mut hook))
+        call(Control::new(&mut hook))
     }
 }
 

@@ -64,10 +64,18 @@ pub use edit::{
     TriangulatedFace,
 };
 pub use geometry::deform::{DeformError, DeformOptions};
+pub use geometry::fill::{
+    BadOption, FillHolesError, FillHolesOptions, FillMethod, FilledHole, FilledHoles, HoleRefusal,
+    RefusedHole, TriangulateHoleError,
+};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
-pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions, SmoothWeights};
+pub use geometry::slivers::{
+    LeftSliver, ResolvedSliver, Sliver, SliverAccount, SliverAction, SliverError, SliverKind, SliverObstacle,
+    SliverOptions,
+};
+pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;
 pub use geometry::weld::{BadAngle, UnweldError, UnweldOptions, WeldOptions};
@@ -76,9 +84,9 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use query::{
-    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, OutwardError,
-    OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, Side, SolidIndex, TurnedOutward,
-    orient_outward,
+    ClosestOptions, ClosestPoint, Contact, Crossing, FacePair, Feature, MassProperties, MeshIndex, Nearest,
+    OutwardError, OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, SelfIntersectionOptions,
+    SelfIntersections, Side, SolidIndex, TurnedOutward, orient_outward,
 };
 pub use report::{
     Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,

@@ -210,7 +210,7 @@ pub(crate) struct Smooth {
     /// How often
     #[arg(long, value_name = "N")]
     pub(crate) iterations: u32,
-    /// How far a step goes, above 0 and, unless implicit, at most 1
+    /// How far a step goes, above 0 and at most 1; at most 10000 for `implicit`
     #[arg(long, value_name = "L", allow_hyphen_values = true)]
     pub(crate) lambda: f64,
     /// The second step of `taubin`, below -L [default: for a pass band of 0.1]
@@ -222,24 +222,6 @@ pub(crate) struct Smooth {
     /// What boundary vertices do
     #[arg(long, value_enum, default_value = "fixed")]
     pub(crate) boundary: Boundary,
-    /// What weighs the neighbours for `implicit`
-    #[arg(long, value_enum, default_value = "uniform")]
-    pub(crate) weights: SmoothWeights,
-    /// The residual at which an implicit step is solved, as a share of that at the start
-    #[arg(long, value_name = "T", default_value = "1e-8", allow_hyphen_values = true)]
-    pub(crate) tolerance: f64,
-    /// The most steps of the solution of an implicit step
-    #[arg(long, value_name = "N", default_value = "1000")]
-    pub(crate) max_steps: u32,
-}
-
-/// What weighs a vertex's neighbours.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum SmoothWeights {
-    /// All alike
-    Uniform,
-    /// By cotangents
-    Cotan,
 }
 
 /// What pulls a vertex.
@@ -251,7 +233,7 @@ pub(crate) enum SmoothMethod {
     Taubin,
     /// The mean of its neighbours, weighted by cotangents
     Cotan,
-    /// The mean of its neighbours as they will be: for large steps
+    /// The same in one backward step of any length up to 10000
     Implicit,
 }
 

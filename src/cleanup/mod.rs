@@ -268,7 +268,7 @@ pub fn index_with(
 ) -> Result<Outcome<IndexedMesh>, CleanError> {
     control.report("weld", 0.0)?;
     // The pool is the first two fifths of a clean-up, and nearly all there is to this.
-    let mut pool = control.part(0.0, 2.0, |control| Pool::new(soup, weld, control))?;
+    let mut pool = control.part(0.0, 2.0, |mut control| Pool::new(soup, weld, &mut control))?;
     control.report("carry attributes", 0.8)?;
     let mut carried = pool.carry_welded();
     let value = pool.lend(std::mem::take(&mut carried.attributes));

@@ -7,7 +7,7 @@ use crate::session::{Answer, Failure, Session};
 use meshwright::glam::DVec3;
 use meshwright::{
     Boundary, Control, DeformOptions, Mesh, Outcome, Report, Scheme, SmoothMethod, SmoothOptions,
-    SmoothWeights, SubdivideOptions, UnweldOptions, WeldOptions,
+    SubdivideOptions, UnweldOptions, WeldOptions,
 };
 
 /// Puts the result in the mesh's place.
@@ -43,14 +43,7 @@ pub(super) fn smooth(session: &mut Session, args: &Smooth) -> Result<Answer, Fai
         (Some(_), Some(_)) => return Err(Failure::Usage("--mu belongs to --method taubin".to_owned())),
         (None | Some(args::SmoothMethod::Laplacian), None) => SmoothMethod::Laplacian,
         (Some(args::SmoothMethod::Cotan), None) => SmoothMethod::Cotangent,
-        (Some(args::SmoothMethod::Implicit), None) => {
-            let weights = match args.weights {
-                args::SmoothWeights::Uniform => SmoothWeights::Uniform,
-                args::SmoothWeights::Cotan => SmoothWeights::Cotangent,
-            };
-            let (tolerance, max_steps) = (args.tolerance, args.max_steps);
-            SmoothMethod::Implicit { weights, tolerance, max_steps }
-        }
+        (Some(args::SmoothMethod::Implicit), None) => SmoothMethod::Implicit,
     };
     let boundary = match args.boundary {
         args::Boundary::Fixed => Boundary::Fixed,

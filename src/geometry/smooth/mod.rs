@@ -1,4 +1,4 @@
-//! Smoothing: Laplacian, Taubin, along the mean curvature (cotangent weights), and implicit.
+//! Smoothing: Laplacian, Taubin, and along the mean curvature (cotangent weights), forward and backward.
 
 mod implicit;
 mod weights;
@@ -7,7 +7,6 @@ use super::unit_scale;
 use crate::matching::NONE;
 use crate::{Cancelled, Control, Mesh, SetError, VertexKey};
 use glam::DVec3;
-use implicit::Goal;
 use weights::Apexes;
 
 /// What pulls a vertex.
@@ -29,31 +28,11 @@ pub enum SmoothMethod {
     /// triangle without area adds none. Larger faces count as the crate's one rule cuts them at the start; their
     /// diagonals carry no weight.
     Cotangent,
-    /// The mean of its one-ring as it will be after the step (backward Euler), so that `lambda` may be as large as one
-    /// likes: a step of 10 smooths about as 10 of 1, and none overshoots. It is one linear system an iteration, solved by
-    /// conjugate gradients. Sliding boundary vertices go first, as they do in a step of `lambda` or 1, whichever is less.
-    /// (Desbrun et al., as above. Hestenes and Stiefel, "Methods of Conjugate Gradients for Solving Linear Systems",
-    /// 1952.)
-    Implicit {
-        /// What weighs the one-ring.
-        weights: SmoothWeights,
-        /// The system is solved when the residual is this share of that at the start, in `(0, 1)`.
-        tolerance: f64,
-        /// The most steps of a solution, each O(edges). A smooth shape takes about the square root of `lambda` times
-        /// the digits wanted.
-        max_steps: u32,
-    },
-}
-
-/// What weighs a vertex's one-ring.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum SmoothWeights {
-    /// All neighbours alike.
-    #[default]
-    Uniform,
-    /// By cotangents, found anew in every iteration, as for [`SmoothMethod::Cotangent`].
-    Cotangent,
+    /// The same weights, taken backward (the implicit step of the same paper): vertices go where the pull of the places
+    /// they reach would lead them back. However long a step, it is as stable as many short ones, and no vertex
+    /// leaves the box of all; so `lambda` may be up to 10,000. One iteration costs O(edges) times the root of `lambda`.
+    /// Boundary vertices that [slide](Boundary::Slide) go first, by a step of at most 1.
+    Implicit,
 }
 
 /// What boundary vertices do.
@@ -76,7 +55,7 @@ pub enum Boundary {
 pub struct SmoothOptions<'a> {
     /// What pulls a vertex.
     pub method: SmoothMethod,
-    /// How far a step goes, in `(0, 1]`; any finite number above 0 for [`SmoothMethod::Implicit`]. 0.5 by default.
+    /// How far a step goes, in `(0, 1]`; for [`SmoothMethod::Implicit`] in `(0, 10000]`. 0.5 by default.
     pub lambda: f64,
     /// How often; for [`SmoothMethod::Taubin`] an iteration is a step of `lambda` and one of `mu`. 1 by default.
     pub iterations: u32,
@@ -105,18 +84,9 @@ impl Default for SmoothOptions<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SmoothError {
-    /// `lambda` is not in `(0, 1]`, or, for an implicit step, not above 0 and finite.
-    #[error("a lambda of {0} is out of range: above 0, and at most 1 unless the step is implicit")]
+    /// `lambda` is not in `(0, 1]`, or for an implicit step not in `(0, 10000]`.
+    #[error("a lambda of {0} is not above 0 and at most 1, or at most 10000 for an implicit step")]
     BadLambda(f64),
-    /// The tolerance of an implicit step is not in `(0, 1)`.
-    #[error("a tolerance of {0} is not between 0 and 1")]
-    BadTolerance(f64),
-    /// An implicit step was not solved within the steps allowed.
-    #[error("not solved: the residual is still {residual} of that at the start")]
-    NotConverged {
-        /// The residual as a share of that at the start.
-        residual: f64,
-    },
     /// `mu` is not below `-lambda`, or infinite.
     #[error("a mu of {mu} is not below -{lambda}")]
     BadMu {
@@ -139,12 +109,10 @@ pub enum SmoothError {
 impl Mesh {
     /// Moves every vertex towards its neighbours, all at once, several times. Neighbours are the one-ring: those joined
     /// by an edge, whatever the faces' degrees. Carried normals stay as they are:
-    /// [compute](Self::compute_normals) them anew. O(edges) an iteration, and for an implicit one
-    /// that times the steps of its solution.
+    /// [compute](Self::compute_normals) them anew. O(edges) an iteration.
     ///
     /// # Errors
-    /// [`SmoothError`]: `lambda`, `mu` or a tolerance out of range, a dead key, a vertex out of range, an implicit step that
-    /// is not solved; when cancelled. Nothing has changed then.
+    /// [`SmoothError`]: `lambda` or `mu` out of range, a dead key, a vertex out of range; when cancelled.
     ///
     /// # Examples
     /// ```
@@ -163,14 +131,10 @@ impl Mesh {
     /// ```
     pub fn smooth(&mut self, options: SmoothOptions<'_>) -> Result<(), SmoothError> {
         let SmoothOptions { method, lambda, iterations, boundary, locked, mut control } = options;
-        let most = if matches!(method, SmoothMethod::Implicit { .. }) { f64::MAX } else { 1.0 };
-        if !(lambda > 0.0 && lambda <= most) {
+        let is_implicit = matches!(method, SmoothMethod::Implicit);
+        let longest = if is_implicit { implicit::LONGEST } else { 1.0 };
+        if !(lambda > 0.0 && lambda <= longest) {
             return Err(SmoothError::BadLambda(lambda));
-        }
-        if let SmoothMethod::Implicit { tolerance, .. } = method
-            && !(tolerance > 0.0 && tolerance < 1.0)
-        {
-            return Err(SmoothError::BadTolerance(tolerance));
         }
         if let SmoothMethod::Taubin { mu } = method
             && !(mu < -lambda && mu.is_finite())
@@ -182,30 +146,24 @@ impl Mesh {
         let scale = unit_scale(self.vertices.live().map(|v| self.positions[v as usize]));
         let mut now: Vec<DVec3> = self.positions.iter().map(|&p| p * scale).collect();
         let mut sums = vec![(DVec3::ZERO, 0.0); now.len()];
-        let by_cotangents = matches!(
-            method,
-            SmoothMethod::Cotangent | SmoothMethod::Implicit { weights: SmoothWeights::Cotangent, .. }
-        );
-        let apexes = by_cotangents.then(|| Apexes::new(self));
-        let is_free: Vec<bool> = rules.of.iter().map(|&rule| rule == Rule::Free).collect();
+        let is_weighted = is_implicit || matches!(method, SmoothMethod::Cotangent);
+        let apexes = is_weighted.then(|| Apexes::new(self));
         let second = if let SmoothMethod::Taubin { mu } = method { Some(mu) } else { None };
         let steps = f64::from(iterations) * if second.is_some() { 2.0 } else { 1.0 };
         let mut done = 0.0;
         for _ in 0..iterations {
-            if let SmoothMethod::Implicit { tolerance, max_steps, .. } = method {
-                // Without sums only those that slide move.
-                rules.step(&mut now, &sums, lambda.min(1.0));
-                let mut tick = |share: f64| control.report("smooth", (done + share) / steps);
-                let goal = Goal { tolerance, max_steps };
-                implicit::step(self, &mut now, &is_free, apexes.as_ref(), lambda, goal, &mut tick)?;
-                done += 1.0;
-                continue;
-            }
             for factor in [Some(lambda), second].into_iter().flatten() {
                 sums.fill((DVec3::ZERO, 0.0));
                 let mut tick = |share: f64| control.report("smooth", (done + share) / steps);
-                sum(self, &now, apexes.as_ref(), &mut sums, &mut tick)?;
-                rules.step(&mut now, &sums, factor);
+                if let (true, Some(apexes)) = (is_implicit, &apexes) {
+                    // Without sums, only what slides moves.
+                    rules.step(&mut now, &sums, factor.min(1.0));
+                    let stays = |v: usize| rules.of[v] != Rule::Free;
+                    implicit::step(self, apexes, stays, &mut now, factor, &mut tick)?;
+                } else {
+                    sum(self, &now, apexes.as_ref(), &mut sums, &mut tick)?;
+                    rules.step(&mut now, &sums, factor);
+                }
                 done += 1.0;
             }
         }
