@@ -66,6 +66,10 @@ pub use edit::{
     TriangulatedFace,
 };
 pub use geometry::deform::{DeformError, DeformOptions};
+pub use geometry::fill::{
+    BadOption, FillHolesError, FillHolesOptions, FillMethod, FilledHole, FilledHoles, HoleRefusal,
+    RefusedHole, TriangulateHoleError,
+};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};

@@ -264,7 +264,7 @@ impl Mesh {
 
     /// Whether the face of `h` has the same corners as all its neighbours together: one face across all its edges, of the
     /// same degree. Then the two close each other off (M17).
-    pub(super) fn is_closed_off(&self, loop_: impl Iterator<Item = u32> + Clone) -> Option<u32> {
+    pub(crate) fn is_closed_off(&self, loop_: impl Iterator<Item = u32> + Clone) -> Option<u32> {
         let mut across = loop_.clone().map(|h| self.face[h as usize ^ 1]);
         let other = across.next().filter(|&f| f != NONE)?;
         let same = across.all(|f| f == other)
