@@ -73,6 +73,10 @@ pub use geometry::fill::{
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
+pub use geometry::slivers::{
+    LeftSliver, ResolvedSliver, Sliver, SliverAccount, SliverAction, SliverError, SliverKind, SliverObstacle,
+    SliverOptions,
+};
 pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;

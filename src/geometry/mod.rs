@@ -6,6 +6,7 @@ pub(crate) mod fill;
 pub(crate) mod measure;
 pub(crate) mod normals;
 pub(crate) mod reduce;
+pub(crate) mod slivers;
 pub(crate) mod smooth;
 pub(crate) mod subdivide;
 pub(crate) mod transform;
