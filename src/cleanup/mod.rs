@@ -3,12 +3,13 @@
 //! [`clean`] runs the whole pipeline; [`index`] runs the part of it that makes a valid vertex pool, and [`inspect`]
 //! tells what state a soup is in without changing it. How faces meet is decided on the indexed form, before half-edges
 //! exist; what makes a solid of a mesh are steps on the mesh, each of which can be called on its own:
-//! [`drop_fins`], [`drop_debris`], [`drop_isolated`], [`turn_outward`].
+//! [`drop_fins`], [`resolve_slivers`], [`drop_debris`], [`fill_holes`], [`drop_isolated`], [`turn_outward`].
 
 mod account;
 mod carry;
 mod drop;
 mod facts;
+mod fill;
 mod fins;
 mod manifold;
 mod open;
@@ -17,6 +18,7 @@ mod pair;
 mod pipeline;
 mod polygons;
 mod pool;
+mod slivers;
 mod solid;
 mod split;
 mod step;
@@ -25,8 +27,10 @@ mod weld;
 pub use account::{Account, FaceTally, LostSummary, SCHEMA};
 pub use drop::{drop_debris, drop_isolated};
 pub use facts::{Facts, inspect};
+pub use fill::fill_holes;
 pub use fins::drop_fins;
 pub use outward::turn_outward;
+pub use slivers::resolve_slivers;
 pub use weld::propose_tolerance;
 
 use crate::report::{Outcome, Report};

@@ -54,9 +54,8 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
 
 fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Result<Built, CleanError> {
     let tolerance = pool.tolerance;
-    let names = |pool: &mut Pool<'_>| Names {
-        vertex: std::mem::take(&mut pool.vertex_source),
-        face: std::mem::take(&mut pool.face_source),
+    let names = |pool: &mut Pool<'_>| {
+        Names::new(std::mem::take(&mut pool.vertex_source), std::mem::take(&mut pool.face_source))
     };
     control.report("match edges", 0.4)?;
     let chains = Chains::new(pool.positions.len(), &pool.polygons);
