@@ -30,6 +30,9 @@ pub(super) struct Stage {
     pub(super) names: Names,
 }
 
+/// How often the steps that change faces are run.
+const MOST_ROUNDS: i32 = 8;
+
 /// Runs the steps that make a solid. `cut` are the faces at edges that were cut because they cannot be oriented.
 pub(super) fn solidify(
     stage: &mut Stage,
@@ -42,50 +45,67 @@ pub(super) fn solidify(
     let cut: Vec<FaceKey> = cut.iter().map(|&f| stage.mesh.faces.key(order[f as usize])).collect();
     drop(order);
 
-    control.report("drop fins", 0.0)?;
-    let dropped = drop_fins(&mut stage.mesh, tolerance)?;
-    stage.join(dropped);
-    stage.resolve_slivers(&mut control.part(0.05, 0.2))?;
-    if let Some(fewer_than) = debris {
-        control.report("drop debris", 0.2)?;
-        stage.drop_debris(fewer_than);
+    // What one step does may leave work for one before it; seldom, and hardly ever twice.
+    for round in 0..MOST_ROUNDS {
+        let share = 1.0 - 0.5f64.powi(round);
+        let is_changed =
+            stage.round(&cut, tolerance, debris, &mut control.part(0.8 * share, 0.4 + 0.4 * share))?;
+        if !is_changed {
+            break;
+        }
     }
-    if !stage.mesh.is_closed() {
-        control.report("fill holes", 0.25)?;
-        stage.fill_holes(&cut, control.part(0.25, 0.5))?;
-        // Where the points of a loop lie on a line, fillers have none to themselves.
-        stage.resolve_slivers(&mut control.part(0.5, 0.6))?;
-    }
-    control.report("drop isolated vertices", 0.6)?;
-    let dropped = drop_isolated(&mut stage.mesh);
-    stage.join(dropped);
-    let turned = turn_outward(&mut stage.mesh, control.part(0.6, 0.9))?;
+    control.report("turn outward", 0.8)?;
+    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.95))?;
     stage.join(turned);
-    control.report("find open parts", 0.9)?;
+    control.report("find open parts", 0.95)?;
     let open = name_open(&stage.mesh, &cut);
     stage.join(open);
+    stage.report.records.sort_by_key(|r| r.step);
     Ok(())
 }
 
 impl Stage {
+    /// Runs the steps that change faces, in order; whether a step did that may leave work for another.
+    fn round(
+        &mut self,
+        cut: &[FaceKey],
+        tolerance: f64,
+        debris: Option<usize>,
+        control: &mut Control<'_>,
+    ) -> Result<bool, CleanError> {
+        control.report("drop fins", 0.0)?;
+        let dropped = drop_fins(&mut self.mesh, tolerance)?;
+        let mut is_changed = self.join(dropped) > 0;
+        is_changed |= self.resolve_slivers(control.part(0.1, 0.4))?;
+        if let Some(fewer_than) = debris {
+            self.drop_debris(fewer_than);
+        }
+        if !self.mesh.is_closed() {
+            is_changed |= self.fill_holes(cut, control.part(0.4, 0.9))?;
+        }
+        control.report("drop isolated vertices", 0.9)?;
+        let dropped = drop_isolated(&mut self.mesh);
+        self.join(dropped);
+        Ok(is_changed)
+    }
+
     pub(super) fn drop_debris(&mut self, fewer_than: usize) {
         let dropped = drop_debris(&mut self.mesh, fewer_than);
         self.join(dropped);
     }
 
-    fn resolve_slivers(&mut self, control: &mut Control<'_>) -> Result<(), CleanError> {
+    fn resolve_slivers(&mut self, control: Control<'_>) -> Result<bool, CleanError> {
         let tolerance = self.mesh.propose_sliver_tolerance();
-        let options = SliverOptions { tolerance, control: control.part(0.0, 1.0) };
+        let options = SliverOptions { tolerance, control };
         let resolved = resolve_slivers(&mut self.mesh, options).map_err(|error| match error {
             SliverError::BadTolerance(t) => CleanError::BadTolerance(t),
             SliverError::Cancelled(c) => CleanError::Cancelled(c),
         })?;
-        self.join(resolved);
-        Ok(())
+        Ok(!self.join(resolved).resolved.is_empty())
     }
 
     /// Fills the holes of parts that can become solids.
-    fn fill_holes(&mut self, cut: &[FaceKey], control: Control<'_>) -> Result<(), CleanError> {
+    fn fill_holes(&mut self, cut: &[FaceKey], control: Control<'_>) -> Result<bool, CleanError> {
         let mesh = &mut self.mesh;
         let parts = Parts::of(mesh);
         let hopeless = hopeless(mesh, &parts, cut);
@@ -101,8 +121,7 @@ impl Stage {
         // The options are fine, so this is the only reason.
         let filled = fill_holes_of(mesh, options, |f| hopeless[parts.of[f as usize] as usize].is_none())
             .map_err(|_| CleanError::Cancelled(Cancelled))?;
-        self.join(filled);
-        Ok(())
+        Ok(!self.join(filled).filled.is_empty())
     }
 
     /// Takes a step's account over, in the soup's numbers.
@@ -110,7 +129,15 @@ impl Stage {
         let Outcome { value, report, maps } = step;
         let records = report.records.into_iter().map(|r| Record { element: self.names.of(r.element), ..r });
         self.report.records.extend(records);
-        self.report.steps.extend(report.steps);
+        for step in report.steps {
+            match self.report.steps.iter_mut().find(|s| s.step == step.step) {
+                Some(all) => {
+                    all.changed += step.changed;
+                    all.moved = all.moved.max(step.moved);
+                }
+                None => self.report.steps.push(step),
+            }
+        }
         if !(maps.vertices.is_identity() && maps.faces.is_identity()) {
             self.names.follow(&maps, &self.mesh);
             // Each relation starts where the one before ended.
