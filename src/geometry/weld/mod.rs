@@ -58,9 +58,9 @@ impl Mesh {
     /// Merges vertices: each joins the lowest vertex kept so far that is nearer than the tolerance, and is kept, where
     /// it is, if there is none. Kept vertices stay at least a tolerance apart, so nothing drifts along a chain.
     ///
-    /// This is [`clean`](crate::cleanup::clean) on the mesh: what the merges fold or double is repaired on record, faces that no longer fit
-    /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
-    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. Welding again changes nothing. Linear time.
+    /// This is [`clean`](crate::cleanup::clean) on the mesh: what the merges fold or double is repaired on record, faces
+    /// that no longer fit together are paired or parted, and a merge that would pinch the surface is taken back. The maps
+    /// lead from the numbering of [`to_indexed`](Self::to_indexed) to the result's. Welding again changes nothing. Linear time.
     ///
     /// User columns come along under their keys, each by its [`Rule`](crate::Rule). A vertex that merged others has its own
     /// value at weight 1 and theirs at 0, as it stays where it is: `keep` and `interpolate` give its own, `average` the
