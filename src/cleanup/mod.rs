@@ -6,14 +6,16 @@
 
 mod carry;
 mod facts;
+mod near;
 mod pair;
 mod polygons;
 mod pool;
 mod split;
+mod tolerance;
 mod weld;
 
 pub use facts::{Facts, inspect};
-pub use weld::propose_tolerance;
+pub use tolerance::{ProposedTolerance, propose_tolerance, propose_tolerance_with_reasons};
 
 use crate::build::assemble;
 use crate::matching::{Chains, Matching, NONE};

@@ -2,7 +2,8 @@
 
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
-use super::weld::{propose_tolerance, weld};
+use super::tolerance::{ProposedTolerance, propose};
+use super::weld::weld;
 use super::{CleanError, Weld};
 use crate::attributes::Attributes;
 use crate::matching::NONE;
@@ -32,6 +33,8 @@ pub(super) struct Pool<'s> {
     pub(super) report: Report,
     /// The tolerance of the weld; `None` if there was none.
     pub(super) tolerance: Option<f64>,
+    /// What was proposed, if the tolerance was.
+    pub(super) proposed: Option<ProposedTolerance>,
     /// Faces that were dropped or changed because they named a vertex twice.
     pub(super) degenerate_faces: usize,
 }
@@ -64,10 +67,35 @@ impl<'s> Pool<'s> {
         let tolerance = match how {
             Weld::None => None,
             Weld::Exact => Some(0.0),
-            Weld::Auto => Some(propose_tolerance(soup)),
+            Weld::Auto => {
+                let exact = Self::new(soup, Weld::Exact, control)?;
+                let (proposed, merged) = propose(&exact, control)?;
+                return match merged {
+                    None => Ok(Self { proposed: Some(proposed), ..exact }),
+                    Some(merged) => {
+                        let named = |v: u32| {
+                            if v == NONE { v } else { exact.vertex_source[merged[v as usize] as usize] }
+                        };
+                        let merged_into = exact.vertex_of.iter().map(|&v| named(v)).collect();
+                        drop(exact);
+                        let pool = Self::welded(soup, merged_into, Some(proposed.tolerance), control)?;
+                        Ok(Self { proposed: Some(proposed), ..pool })
+                    }
+                };
+            }
             Weld::Within(t) => Some(t),
         };
         let merged_into = weld(&soup.positions, tolerance, control)?;
+        Self::welded(soup, merged_into, tolerance, control)
+    }
+
+    /// The pool of a soup of which each vertex is merged into the given one.
+    fn welded(
+        soup: &'s PolygonSoup,
+        merged_into: Vec<u32>,
+        tolerance: Option<f64>,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
         let mut pool = Self {
             soup,
             positions: Vec::new(),
@@ -81,6 +109,7 @@ impl<'s> Pool<'s> {
             middles: Vec::new(),
             report: Report::default(),
             tolerance,
+            proposed: None,
             degenerate_faces: 0,
         };
         let dropped = pool.number_vertices();

@@ -20,3 +20,5 @@ pub use index::{Feature, MeshIndex};
 pub use mass::MassProperties;
 pub use outward::{OutwardError, OutwardOptions, OutwardPart, TurnedOutward, orient_outward};
 pub use ray::{Crossing, Ray, RayError, RayHit};
+
+pub(crate) use nearest::segment_foot;
