@@ -115,11 +115,8 @@ impl Mesh {
         let value = Mesh::build(&fans.pool(self)).map_err(UnweldError::Bug)?;
         let records = fans.parted(self);
         let changed = fans.added.len();
-        let report = Report {
-            steps: vec![StepSummary { step: Step::Unweld, changed, tolerance: None }],
-            records,
-            ..Report::default()
-        };
+        let report =
+            Report { steps: vec![StepSummary::new(Step::Unweld, changed)], records, ..Report::default() };
         let (old, new) = (fans.order.len(), value.vertex_count());
         let stay = (0..old as u32).map(|v| (v, v));
         let split = fans.added.iter().zip(old as u32..).map(|(&v, new)| (fans.number[v as usize], new));
@@ -257,12 +254,8 @@ impl Fans {
             let ends = [2 * e, 2 * e + 1].map(|h| mesh.origin[h as usize]);
             let [a, b] = ends.map(|v| self.number[v as usize]);
             let [p, q] = ends.map(|v| mesh.positions[v as usize]);
-            Record {
-                step: Step::Unweld,
-                kind: Kind::SharpEdge,
-                element: Element::Edge([a.min(b), a.max(b)]),
-                place: Some(p * 0.5 + q * 0.5),
-            }
+            let element = Element::Edge([a.min(b), a.max(b)]);
+            Record::new(Step::Unweld, Kind::SharpEdge, element, Some(p * 0.5 + q * 0.5))
         };
         mesh.edges.live().filter(inner).filter(parted).map(record).collect()
     }

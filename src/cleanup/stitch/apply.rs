@@ -75,7 +75,8 @@ fn insert_corners(pool: &mut Pool<'_>, plan: &Plan) {
     }
     let soup_corners = pool.soup.polygons.corners().len() as u32;
     let more = plan.cuts.len();
-    let mut polygons = Polygons::with_capacity(pool.polygons.len() + more, pool.corner_source.len() + 3 * more);
+    let mut polygons =
+        Polygons::with_capacity(pool.polygons.len() + more, pool.corner_source.len() + 3 * more);
     let mut sources = Vec::with_capacity(pool.corner_source.len() + 3 * more);
     let mut faces = Vec::with_capacity(pool.polygons.len() + more);
     let mut cuts = plan.cuts.iter().peekable();
@@ -93,7 +94,9 @@ fn insert_corners(pool: &mut Pool<'_>, plan: &Plan) {
         sides.clear();
         for i in 0..face.len() {
             let mut side = Vec::new();
-            while let Some(&&NewCorner { at, vertex, .. }) = cuts.peek().filter(|c| c.corner as usize == first + i) {
+            while let Some(&&NewCorner { at, vertex, .. }) =
+                cuts.peek().filter(|c| c.corner as usize == first + i)
+            {
                 cuts.next();
                 let ends = [old(i).source, old((i + 1) % face.len()).source];
                 side.push(Corner { vertex, source: soup_corners + pool.blends.len() as u32 });
@@ -110,8 +113,9 @@ fn insert_corners(pool: &mut Pool<'_>, plan: &Plan) {
             let at = |c: &Corner| pool.positions[c.vertex as usize];
             cut_triangle([old(0), old(1), old(2)], [a, b, c], &at, &mut |t| push(&t));
         } else {
-            let corners: Vec<Corner> =
-                (0..face.len()).flat_map(|i| std::iter::once(old(i)).chain(sides[i].iter().copied())).collect();
+            let corners: Vec<Corner> = (0..face.len())
+                .flat_map(|i| std::iter::once(old(i)).chain(sides[i].iter().copied()))
+                .collect();
             push(&corners);
         }
     }

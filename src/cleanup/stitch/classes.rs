@@ -117,7 +117,9 @@ impl<'s, 'p> Classes<'s, 'p> {
         let ends = [self.kept(a), self.kept(b)];
         let can_keep = |&end: &u32| {
             let place = self.seams.at(end);
-            self.members(a).chain(self.members(b)).all(|m| self.seams.at(m).distance(place) <= self.seams.reach)
+            self.members(a)
+                .chain(self.members(b))
+                .all(|m| self.seams.at(m).distance(place) <= self.seams.reach)
         };
         let kept = [ends[0].min(ends[1]), ends[0].max(ends[1])].into_iter().find(can_keep)?;
         let [mut first, mut second] = std::mem::take(&mut self.around);

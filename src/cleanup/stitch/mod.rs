@@ -10,7 +10,7 @@ mod cracks;
 mod junctions;
 mod seams;
 
-use super::drop_duplicates;
+use super::manifold::drop_duplicates;
 use super::pool::Pool;
 use super::{CleanError, Weld};
 use crate::matching::Matching;
@@ -48,11 +48,7 @@ use seams::Seams;
 /// assert_eq!(stitched.report.count(Kind::TJunction), 1);
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
-pub fn stitch(
-    soup: &PolygonSoup,
-    weld: Weld,
-    tolerance: f64,
-) -> Result<Outcome<IndexedMesh>, CleanError> {
+pub fn stitch(soup: &PolygonSoup, weld: Weld, tolerance: f64) -> Result<Outcome<IndexedMesh>, CleanError> {
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         return Err(CleanError::BadTolerance(tolerance));
     }
@@ -63,7 +59,7 @@ pub fn stitch(
         matching = Matching::new(pool.positions.len(), &pool.polygons);
     }
     stitch_pool(&mut pool, &matching, tolerance, &mut control)?;
-    Ok(pool.into_outcome())
+    Ok(super::outcome(pool))
 }
 
 /// Stitches a pool. Whether anything changed: then edges are to be matched again.

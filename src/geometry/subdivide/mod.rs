@@ -194,9 +194,9 @@ impl Mesh {
         let limit = max_faces.min(MAX_ELEMENTS) as u64;
         let mut report = Report::default();
         if let Some(cut) = prepared.triangulated {
-            report.steps.push(StepSummary { step: Step::Triangulate, changed: cut, tolerance: None });
+            report.steps.push(StepSummary::new(Step::Triangulate, cut));
         }
-        report.steps.push(StepSummary { step: Step::Subdivide, changed: 0, tolerance: None });
+        report.steps.push(StepSummary::new(Step::Subdivide, 0));
         report.not_carried = self.carried_attributes();
         let (value, maps, changed) = if let Some(only) = options.only {
             partial::subdivide(self, only, levels, limit, &mut control)?
