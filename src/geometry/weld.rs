@@ -58,7 +58,9 @@ impl Mesh {
     ///
     /// This is [`clean`] on the mesh: what the merges fold or double is repaired on record, faces that no longer fit
     /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
-    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. Welding again changes nothing. Linear time.
+    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. If all merges are taken back, nothing is on record.
+    /// Welding again changes nothing, but where surfaces cross so often that merges were taken back to make room for
+    /// others. Linear time.
     ///
     /// # Errors
     /// [`CleanError::BadTolerance`] on a tolerance that is negative, NaN or infinite; when cancelled.
@@ -75,10 +77,14 @@ impl Mesh {
     /// ```
     pub fn weld(&self, options: WeldOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
         let WeldOptions { tolerance, control } = options;
-        clean(
-            &self.to_indexed().into(),
-            CleanOptions { weld: Weld::Within(tolerance), control, ..Default::default() },
-        )
+        let options = CleanOptions { weld: Weld::Within(tolerance), control, ..Default::default() };
+        let mut outcome = clean(&self.to_indexed().into(), options)?;
+        // Merged and parted again, it is as it was: edges that had more faces in between are nobody's concern.
+        if !outcome.report.records.is_empty() && outcome.value.to_indexed() == self.to_indexed() {
+            outcome.report.records.clear();
+            outcome.report.steps.iter_mut().for_each(|step| step.changed = 0);
+        }
+        Ok(outcome)
     }
 
     /// Parts the surface along sharp edges, the inverse of a weld: around each vertex, the faces between two sharp
