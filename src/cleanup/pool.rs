@@ -3,8 +3,9 @@
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
 use super::weld::{propose_tolerance, weld};
-use super::{CleanError, Weld};
+use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
+use crate::geometry::distance;
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
 use crate::{Cancelled, Control, IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
@@ -27,6 +28,8 @@ pub(super) struct Pool<'s> {
     pub(super) flipped: Vec<bool>,
     /// The last vertices are in the middle between these: edges that were parted.
     pub(super) parted: Vec<[u32; 2]>,
+    /// Faces at edges that were cut because the surface cannot be oriented.
+    pub(super) cut: Vec<u32>,
     /// The corners at those vertices, ascending.
     pub(super) middles: Vec<u32>,
     pub(super) report: Report,
@@ -78,6 +81,7 @@ impl<'s> Pool<'s> {
             vertex_of: merged_into,
             flipped: Vec::new(),
             parted: Vec::new(),
+            cut: Vec::new(),
             middles: Vec::new(),
             report: Report::default(),
             tolerance,
@@ -91,11 +95,11 @@ impl<'s> Pool<'s> {
             // Cutting faces into triangles can triple their corners.
             return Err(CleanError::TooLarge { elements });
         }
-        let step = |step, changed, tolerance| StepSummary { step, changed, tolerance };
         if pool.tolerance.is_some() {
-            pool.report.steps.push(step(Step::Weld, merged, pool.tolerance));
+            let weld = StepSummary::new(Step::Weld, merged);
+            pool.report.steps.push(StepSummary { tolerance: pool.tolerance, ..weld });
         }
-        pool.report.steps.push(step(Step::RepairPolygons, repairs.len(), None));
+        pool.report.steps.push(StepSummary::new(Step::RepairPolygons, repairs.len()));
         pool.report.records.extend(repairs);
         Ok(pool)
     }
@@ -154,7 +158,7 @@ impl<'s> Pool<'s> {
             };
             if let Some(kind) = kind {
                 self.degenerate_faces += 1;
-                repairs.push(Record { step: Step::RepairPolygons, kind, element, place: self.middle(face) });
+                repairs.push(Record::new(Step::RepairPolygons, kind, element, self.middle(face)));
             }
             for piece in pieces.iter() {
                 self.polygons.push(piece.iter().map(|&i| welded[i as usize]));
@@ -162,12 +166,12 @@ impl<'s> Pool<'s> {
                 self.face_source.push(f as u32);
             }
         }
-        self.report.steps.push(StepSummary { step: Step::DropInvalid, changed: dropped, tolerance: None });
+        self.report.steps.push(StepSummary::new(Step::DropInvalid, dropped));
         Ok(repairs)
     }
 
     pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {
-        self.report.records.push(Record { step, kind, element, place });
+        self.report.records.push(Record::new(step, kind, element, place));
     }
 
     /// The mean of a soup face's finite corners.
@@ -218,15 +222,19 @@ impl<'s> Pool<'s> {
         }
         let soup = self.soup;
         let vertices = soup.positions.iter().zip(0u32..).filter(|(p, _)| p.is_finite());
-        let moved = vertices.filter(|&(&p, v)| ended(v).is_some_and(|q| q != p));
-        let merges = moved.map(|(&p, v)| Record {
-            step: Step::Weld,
-            kind: Kind::MergedVertex,
-            element: Element::Vertex(v),
-            place: Some(p),
-        });
+        let mut farthest = 0.0f64;
+        let mut merges = Vec::new();
+        for (&p, v) in vertices {
+            if let Some(q) = ended(v).filter(|&q| q != p) {
+                farthest = farthest.max(distance(p, q));
+                merges.push(Record::new(Step::Weld, Kind::MergedVertex, Element::Vertex(v), Some(p)));
+            }
+        }
         let before = self.report.records.partition_point(|r| r.step < Step::Weld);
-        self.report.records.splice(before..before, merges.collect::<Vec<_>>());
+        self.report.records.splice(before..before, merges);
+        for step in self.report.steps.iter_mut().filter(|s| s.step == Step::Weld) {
+            step.moved = farthest;
+        }
     }
 
     /// The soup's attributes on the vertices as they were welded.
@@ -248,8 +256,17 @@ impl<'s> Pool<'s> {
         (self.positions, self.polygons, _) = indexed.into_parts();
     }
 
+    /// Where its elements come from, moved out but for faces, which the maps need.
+    pub(super) fn sources(&mut self) -> Sources {
+        Sources {
+            corners: std::mem::take(&mut self.corner_source),
+            faces: self.face_source.clone(),
+            middles: std::mem::take(&mut self.middles),
+        }
+    }
+
     /// The account of a pool whose vertices stand as they were welded, at these positions.
-    pub(super) fn account(mut self, positions: &[DVec3]) -> (Report, Maps) {
+    pub(super) fn account(&mut self, positions: &[DVec3]) -> (Report, Maps) {
         let maps = Maps {
             vertices: Relation::from_map(
                 &self.vertex_of.iter().map(|&v| Some(v).filter(|&v| v != NONE)).collect::<Vec<_>>(),
@@ -259,6 +276,6 @@ impl<'s> Pool<'s> {
         };
         let of = std::mem::take(&mut self.vertex_of);
         self.record_merges(|v| positions.get(of[v as usize] as usize).copied());
-        (self.report, maps)
+        (std::mem::take(&mut self.report), maps)
     }
 }

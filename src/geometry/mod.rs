@@ -1,7 +1,8 @@
 //! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures; transforms, weld,
-//! subdivision and smoothing in bulk.
+//! subdivision, smoothing and the filling of holes in bulk.
 
 pub(crate) mod deform;
+pub(crate) mod fill;
 pub(crate) mod measure;
 pub(crate) mod normals;
 pub(crate) mod reduce;

@@ -152,7 +152,7 @@ fn noise(points: impl Iterator<Item = DVec3>) -> f64 {
 }
 
 /// The reflex corners of a polygon in a grid of about as many cells.
-struct Grid {
+pub(super) struct Grid {
     origin: DVec2,
     per_unit: DVec2,
     columns: usize,
@@ -162,7 +162,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(plane: &[DVec2], reflex: &[bool]) -> Self {
+    pub(super) fn new(plane: &[DVec2], reflex: &[bool]) -> Self {
         let corners = || (0..plane.len()).filter(|&i| reflex[i]);
         let side = (corners().count() as f64).sqrt().ceil().clamp(1.0, 1024.0) as usize;
         let min = plane.iter().fold(DVec2::INFINITY, |m, &p| m.min(p));
@@ -199,7 +199,7 @@ impl Grid {
         [(at.x as usize).min(self.columns - 1), (at.y as usize).min(self.rows - 1)]
     }
 
-    fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = &[u32]> {
+    pub(super) fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = &[u32]> {
         let ([x0, y0], [x1, y1]) = (self.cell(min), self.cell(max));
         // A row of cells lies together.
         (y0..=y1).map(move |y| {

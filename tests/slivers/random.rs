@@ -93,22 +93,6 @@ fn very_many_slivers_around_one_vertex_take_bounded_time() {
     let tolerance = mesh.propose_sliver_tolerance();
     let account = mesh.resolve_slivers(SliverOptions::new(tolerance)).unwrap();
     let took = start.elapsed().as_secs_f64();
-    println!("{} found, {} left, {took} s", account.found, account.left.len());
-    assert_eq!(mesh.validate(), Ok(()));
+    assert_eq!((account.found, account.left.len(), mesh.validate()), (20_000, 0, Ok(())));
     assert!(took < 20.0);
-}
-
-#[test]
-fn debug_one() {
-    let mut mesh = shapes::mesh(&shapes::icosphere(8));
-    for count in [0, 1, 10_000] {
-        for _ in 0..count {
-            let e = mesh.edges().next().unwrap();
-            put_cap(&mut mesh, e, 0.5, false);
-        }
-        let tolerance = mesh.propose_sliver_tolerance();
-        let start = std::time::Instant::now();
-        let account = mesh.resolve_slivers(SliverOptions::new(tolerance)).unwrap();
-        println!("{} faces, {} found, {:?}", mesh.face_count(), account.found, start.elapsed());
-    }
 }
