@@ -50,7 +50,7 @@ mod walk;
 pub mod walking {}
 
 pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
-pub use build::{BuildDefect, BuildError};
+pub use build::{BuildDefect, BuildError, BuildWithError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
 pub use control::{Cancelled, Control, Progress};
@@ -64,9 +64,17 @@ pub use edit::{
     TriangulatedFace,
 };
 pub use geometry::deform::{DeformError, DeformOptions};
+pub use geometry::fill::{
+    BadOption, FillHolesError, FillHolesOptions, FillMethod, FilledHole, FilledHoles, HoleRefusal,
+    RefusedHole, TriangulateHoleError,
+};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
+pub use geometry::slivers::{
+    LeftSliver, ResolvedSliver, Sliver, SliverAccount, SliverAction, SliverError, SliverKind, SliverObstacle,
+    SliverOptions,
+};
 pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;
@@ -85,7 +93,9 @@ pub use report::{
     Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
-pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use topology::{
+    EdgeRef, NakedEdges, NotOrientable, Topology, UnifyWithError, unify_winding, unify_winding_with,
+};
 pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 

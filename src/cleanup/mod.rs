@@ -12,7 +12,7 @@ mod pool;
 mod split;
 mod weld;
 
-pub use facts::{Facts, inspect};
+pub use facts::{Facts, inspect, inspect_with};
 pub use weld::propose_tolerance;
 
 use crate::build::assemble;
@@ -155,6 +155,27 @@ struct Cleaned<M> {
     carried: Carried,
     report: Report,
     maps: Maps,
+    sources: Sources,
+}
+
+/// Where the elements of the result were in the soup.
+pub(crate) struct Sources {
+    /// For each corner the soup's.
+    pub(crate) corners: Vec<u32>,
+    /// For each face the soup's.
+    pub(crate) faces: Vec<u32>,
+    /// The corners in the middle of a parted edge, which were none of the soup's; ascending.
+    pub(crate) middles: Vec<u32>,
+}
+
+/// As [`clean`], but tells of corners too.
+pub(crate) fn clean_tracked(
+    soup: &PolygonSoup,
+    options: CleanOptions<'_>,
+) -> Result<(Outcome<Mesh>, Sources), CleanError> {
+    let cleaned = run(soup, options, |mesh| mesh)?;
+    let (value, maps) = (cleaned.kept, cleaned.maps);
+    Ok((Outcome { value, report: tell(cleaned.report, &cleaned.carried), maps }, cleaned.sources))
 }
 
 fn run<M>(
@@ -174,8 +195,9 @@ fn run<M>(
         let indexed = pool.lend(std::mem::take(&mut carried.attributes));
         if let Some(mesh) = assemble(&indexed, &chains.into_pairing()) {
             let kept = keep(mesh);
+            let sources = pool.sources();
             let (report, maps) = pool.account(indexed.positions());
-            return Ok(Cleaned { indexed, kept, carried, report, maps });
+            return Ok(Cleaned { indexed, kept, carried, report, maps, sources });
         }
         pool.take_back(indexed);
     }
@@ -198,7 +220,8 @@ fn run<M>(
     let mut carried = carry::carry(&pool, |v| maps.vertices.new_of(v));
     let indexed = pool.lend(std::mem::take(&mut carried.attributes));
     let kept = keep(Mesh::build(&indexed).map_err(CleanError::Bug)?);
-    Ok(Cleaned { indexed, kept, carried, report: pool.report, maps })
+    let sources = pool.sources();
+    Ok(Cleaned { indexed, kept, carried, report: pool.report, maps, sources })
 }
 
 /// The report with what the result does not have of the soup's attributes.
@@ -222,7 +245,31 @@ fn tell(report: Report, carried: &Carried) -> Report {
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
-    let mut pool = Pool::new(soup, weld, &mut Control::none())?;
+    index_with(soup, weld, Control::none())
+}
+
+/// As [`index`], with a progress-and-cancel hook.
+///
+/// # Errors
+/// As [`index`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, PolygonSoup, Progress, cleanup::{CleanError, Weld, index_with}};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let refused = index_with(&PolygonSoup::default(), Weld::Exact, Control::new(&mut stop));
+/// assert!(matches!(refused, Err(CleanError::Cancelled(_))));
+/// ```
+pub fn index_with(
+    soup: &PolygonSoup,
+    weld: Weld,
+    mut control: Control<'_>,
+) -> Result<Outcome<IndexedMesh>, CleanError> {
+    control.report("weld", 0.0)?;
+    // The pool is the first two fifths of a clean-up, and nearly all there is to this.
+    let mut pool = control.part(0.0, 2.0, |mut control| Pool::new(soup, weld, &mut control))?;
+    control.report("carry attributes", 0.8)?;
     let mut carried = pool.carry_welded();
     let value = pool.lend(std::mem::take(&mut carried.attributes));
     let (report, maps) = pool.account(value.positions());

@@ -3,7 +3,7 @@
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
 use super::weld::{propose_tolerance, weld};
-use super::{CleanError, Weld};
+use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
@@ -246,6 +246,15 @@ impl<'s> Pool<'s> {
     /// Takes positions and faces back.
     pub(super) fn take_back(&mut self, indexed: IndexedMesh) {
         (self.positions, self.polygons, _) = indexed.into_parts();
+    }
+
+    /// Where its elements come from, moved out but for faces, which the maps need.
+    pub(super) fn sources(&mut self) -> Sources {
+        Sources {
+            corners: std::mem::take(&mut self.corner_source),
+            faces: self.face_source.clone(),
+            middles: std::mem::take(&mut self.middles),
+        }
     }
 
     /// The account of a pool whose vertices stand as they were welded, at these positions.

@@ -15,10 +15,12 @@
 //!
 //! A mesh without columns pays one comparison for each element that an operator makes or merges.
 
+mod derive;
 mod rule;
 mod store;
 
 pub use rule::{Event, Interpolate, Rule};
+pub(crate) use derive::{Origin, Walk};
 pub(crate) use store::{Columns, Dense, Kind, Store};
 
 use crate::mesh::dead;

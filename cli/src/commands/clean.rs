@@ -4,15 +4,14 @@ use crate::args::{Clean, Profile};
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::text::{self, counted};
 use crate::{import, output, progress};
-use meshwright::cleanup::{self, CleanOptions, Facts, Weld};
+use meshwright::cleanup::{self, CleanError, CleanOptions, Facts, Weld};
 use meshwright::{Control, PolygonSoup, Step};
 
 pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failure> {
     args.output.format()?;
     let loaded = import::load(session, &args.file)?;
     let Profile::Preserve = args.profile;
-    let before = session
-        .timed(Phase::Run, || progress::named("inspecting", || cleanup::inspect(&loaded.soup, args.weld)))?;
+    let before = inspect(session, &loaded.soup, args.weld)?;
     let outcome = session.timed(Phase::Run, || {
         progress::shown(|hook| {
             let options = CleanOptions { weld: args.weld, control: Control::new(hook), ..Default::default() };
@@ -21,8 +20,7 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     })?;
     let soup: PolygonSoup = session.timed(Phase::Run, || outcome.value.into());
     // Splits leave vertices at one place, so the result is looked at as it is.
-    let after = session
-        .timed(Phase::Run, || progress::named("inspecting", || cleanup::inspect(&soup, Weld::None)))?;
+    let after = inspect(session, &soup, Weld::None)?;
     // All files are complete before the first is put in its place.
     let (staged, lost) = output::stage_mesh(session, &args.output, &soup)?;
     let mut staged = vec![staged];
@@ -70,6 +68,12 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         text.push_str("vertices that were split lie at one place: look at the result with --weld none\n");
     }
     Ok(Answer { json, text, is_no: false })
+}
+
+fn inspect(session: &mut Session, soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
+    session.timed(Phase::Run, || {
+        progress::shown(|hook| cleanup::inspect_with(soup, weld, Control::new(hook)))
+    })
 }
 
 fn summary(f: &Facts) -> String {
