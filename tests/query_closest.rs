@@ -49,7 +49,10 @@ fn nearest_elements_are_those_of_the_naive_loops() {
             assert!(naive::on_segment(edge.point, a, b).distance(edge.point) < 1e-9);
             let surface = index.closest_point(p, ALL).expect("asked well").expect("a point");
             if is_flat {
-                assert!((surface.distance - naive::closest_point(&triangles, p)).abs() <= 1e-9, "{p} {surface:?}");
+                assert!(
+                    (surface.distance - naive::closest_point(&triangles, p)).abs() <= 1e-9,
+                    "{p} {surface:?}"
+                );
             }
             assert!(surface.distance <= vertex.distance && surface.distance <= edge.distance + 1e-9);
             let at: DVec3 =

@@ -46,7 +46,8 @@ fn laplacian_smoothing_equals_the_tutorials_loop_on_any_faces() {
                 let mut ours = mesh.clone();
                 smooth(&mut ours, SmoothOptions { lambda: 0.7, iterations, boundary, ..Default::default() });
                 let on_boundary: Vec<bool> = mesh.vertices().map(|v| mesh.is_boundary_vertex(v)).collect();
-                let expected = naive::laplacian(&(&pool).into(), 0.7, iterations, |v| !free && on_boundary[v]);
+                let expected =
+                    naive::laplacian(&(&pool).into(), 0.7, iterations, |v| !free && on_boundary[v]);
                 for (p, q) in positions(&ours).iter().zip(expected) {
                     assert!(p.distance(q) < 1e-12, "{p} {q}");
                 }
@@ -197,8 +198,12 @@ fn an_implicit_step_obeys_locks_and_boundaries() {
         let locked: Vec<_> = mesh.vertices().filter(|&v| mesh.position(v).x == 3.0).collect();
         let rim: Vec<_> = mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect();
         let method = SmoothMethod::Implicit;
-        smooth(&mut mesh, SmoothOptions { method, lambda: 50.0, boundary, locked: &locked, ..Default::default() });
-        let moved = |v| mesh.position(v) != pool.positions()[mesh.vertices().position(|w| w == v).expect("there")];
+        smooth(
+            &mut mesh,
+            SmoothOptions { method, lambda: 50.0, boundary, locked: &locked, ..Default::default() },
+        );
+        let moved =
+            |v| mesh.position(v) != pool.positions()[mesh.vertices().position(|w| w == v).expect("there")];
         assert!(!locked.iter().any(|&v| moved(v)), "{boundary:?}");
         assert_eq!(rim.iter().any(|&v| moved(v)), boundary != Boundary::Fixed, "{boundary:?}");
         assert!(mesh.vertices().filter(|&v| moved(v)).count() > 15, "{boundary:?}");

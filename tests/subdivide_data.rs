@@ -223,9 +223,8 @@ fn a_seam_under_sqrt3_runs_in_a_zigzag_and_both_sides_go_on() {
     let mut pool = shapes::grid(4);
     pool.map_positions(|p| dvec3(p.x, p.y, 0.0)).expect("finite");
     let mut mesh = shapes::mesh(&pool);
-    let is_right = |mesh: &Mesh, f: FaceKey| {
-        mesh.face_vertices(f).map(|v| mesh.position(v).x).sum::<f64>() / 3.0 > 2.0
-    };
+    let is_right =
+        |mesh: &Mesh, f: FaceKey| mesh.face_vertices(f).map(|v| mesh.position(v).x).sum::<f64>() / 3.0 > 2.0;
     for h in corners(&mesh) {
         let shift = if is_right(&mesh, mesh.face(h).expect("a corner")) { 100.0 } else { 0.0 };
         let p = mesh.position(mesh.origin(h));
@@ -271,7 +270,10 @@ fn attributes_come_along() {
             let color = fine.color(v).expect("given");
             if way.starts_with("Mid") || way.starts_with("some") {
                 let p = fine.position(v).as_vec3();
-                assert!((DVec3::from(p) - dvec3(color[0].into(), color[1].into(), color[2].into())).length() < 1e-6);
+                assert!(
+                    (DVec3::from(p) - dvec3(color[0].into(), color[1].into(), color[2].into())).length()
+                        < 1e-6
+                );
             }
         }
         for h in corners(&fine) {

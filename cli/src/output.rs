@@ -3,8 +3,8 @@
 use crate::args::Output;
 use crate::progress;
 use crate::session::{Failure, Phase, Session};
-use meshwright::{Control, PolygonSoup};
 use meshwright::io::{self, Encoding, Lost, WriteError};
+use meshwright::{Control, PolygonSoup};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};

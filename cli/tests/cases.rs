@@ -25,7 +25,9 @@ impl Shape {
                 self.points.push(p);
             }
         }
-        for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        for [a, b, c, d] in
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        {
             for t in [[a, b, c], [a, c, d]] {
                 let mut t = t.map(|v: usize| corners[v]);
                 if inverted {
@@ -121,14 +123,22 @@ fn every_measured_case_is_answered_rightly_by_the_program() {
         fs::write(dir.join("a.obj"), case.shape.text()).expect("written");
         let (code, answer) = json(&dir, &["is-closed", "a.obj"]);
         assert_eq!((code, &answer["closed"]), (i32::from(!case.closed), &case.closed.into()), "{name}");
-        let witnesses = ["boundary_edges", "nonmanifold_edges"].map(|w| answer["witnesses"][w].as_array().map(Vec::len));
+        let witnesses =
+            ["boundary_edges", "nonmanifold_edges"].map(|w| answer["witnesses"][w].as_array().map(Vec::len));
         assert_eq!(witnesses == [Some(0), Some(0)], case.closed, "{name}: {witnesses:?}");
 
         let (code, answer) = json(&dir, &["volume", "a.obj"]);
-        assert_eq!((code, answer["volume"].as_f64()), (i32::from(case.volume.is_none()), case.volume), "{name}");
+        assert_eq!(
+            (code, answer["volume"].as_f64()),
+            (i32::from(case.volume.is_none()), case.volume),
+            "{name}"
+        );
         let told = &answer["import"]["counts"];
         let flips = if name == "mixed" { json!(4) } else { Value::Null };
-        assert!(told["flipped_face"] == flips || name == "moebius", "{name}: what the import changed is told");
+        assert!(
+            told["flipped_face"] == flips || name == "moebius",
+            "{name}: what the import changed is told"
+        );
         assert_eq!(told["cut_edge"].is_null(), name != "moebius", "{name}: {told}");
 
         let (code, answer) = json(&dir, &["naked-edges", "a.obj"]);
@@ -149,7 +159,11 @@ fn every_measured_case_is_answered_rightly_by_the_program() {
 
         let (code, answer) = json(&dir, &["weld", "--tolerance", "0", "a.obj", "-o", "c.obj"]);
         let [vertices, faces] = case.welded;
-        assert_eq!((code, &answer["vertices"], &answer["faces"]), (0, &vertices.into(), &faces.into()), "{name}");
+        assert_eq!(
+            (code, &answer["vertices"], &answer["faces"]),
+            (0, &vertices.into(), &faces.into()),
+            "{name}"
+        );
         let _ = fs::remove_file(dir.join("b.obj"));
     }
 }
@@ -184,7 +198,8 @@ fn rays_along_the_diagonals_of_a_cube_cross_twice() {
     let (code, answer) = json(&dir, &["raycast", "a.obj", "--queries", "rays.txt"]);
     assert_eq!(code, 0);
     for hits in answer["results"].as_array().expect("results") {
-        let entering: Vec<_> = hits["hits"].as_array().expect("hits").iter().map(|h| &h["entering"]).collect();
+        let entering: Vec<_> =
+            hits["hits"].as_array().expect("hits").iter().map(|h| &h["entering"]).collect();
         assert_eq!(entering, [&json!(true), &json!(false)], "{hits}");
     }
 }

@@ -12,19 +12,43 @@ const BRACKET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/data/bro
 /// The commands with an argument list, where FILE stands for the input and OUT for the output, and the fields beside
 /// those that every answer has. Some may answer "no".
 const COMMANDS: [(&[&str], &[&str]); 22] = [
-    (&["weld", "--tolerance", "1e-6", "FILE", "-o", "OUT"], &["vertices", "faces", "counts", "defects", "import", "lost"]),
-    (&["unweld", "--angle", "30", "FILE", "-o", "OUT"], &["vertices", "faces", "counts", "defects", "import", "lost"]),
+    (
+        &["weld", "--tolerance", "1e-6", "FILE", "-o", "OUT"],
+        &["vertices", "faces", "counts", "defects", "import", "lost"],
+    ),
+    (
+        &["unweld", "--angle", "30", "FILE", "-o", "OUT"],
+        &["vertices", "faces", "counts", "defects", "import", "lost"],
+    ),
     (&["unify", "FILE", "-o", "OUT"], &["orientable", "flipped", "lost", "import"]),
     (&["unify", "FILE", "--outward", "-o", "OUT"], &["orientable", "flipped", "parts", "lost", "import"]),
     (&["flip", "FILE", "-o", "OUT"], &["faces", "import", "lost"]),
     (&["convert", "FILE", "-o", "OUT"], &["faces", "import", "lost"]),
-    (&["reduce", "--ratio", "0.5", "FILE", "-o", "OUT"], &["stopped", "faces", "vertices", "max_error", "import"]),
+    (
+        &["reduce", "--ratio", "0.5", "FILE", "-o", "OUT"],
+        &["stopped", "faces", "vertices", "max_error", "import"],
+    ),
     (&["reduce", "--max-error", "0.01", "FILE", "-o", "OUT"], &["stopped", "faces", "faces_before"]),
-    (&["smooth", "--iterations", "2", "--lambda", "0.5", "FILE", "-o", "OUT"], &["vertices", "faces", "import", "lost"]),
-    (&["smooth", "--iterations", "2", "--lambda", "0.5", "--mu", "-0.53", "FILE", "-o", "OUT"], &["vertices", "faces"]),
-    (&["subdivide", "--scheme", "midpoint", "--levels", "1", "FILE", "-o", "OUT"], &["vertices", "faces", "import"]),
-    (&["subdivide", "--scheme", "catmull-clark", "--levels", "1", "FILE", "-o", "OUT"], &["vertices", "faces"]),
-    (&["transform", "--translate", "-1,2,-3.5", "FILE", "-o", "OUT"], &["vertices", "faces", "import", "lost"]),
+    (
+        &["smooth", "--iterations", "2", "--lambda", "0.5", "FILE", "-o", "OUT"],
+        &["vertices", "faces", "import", "lost"],
+    ),
+    (
+        &["smooth", "--iterations", "2", "--lambda", "0.5", "--mu", "-0.53", "FILE", "-o", "OUT"],
+        &["vertices", "faces"],
+    ),
+    (
+        &["subdivide", "--scheme", "midpoint", "--levels", "1", "FILE", "-o", "OUT"],
+        &["vertices", "faces", "import"],
+    ),
+    (
+        &["subdivide", "--scheme", "catmull-clark", "--levels", "1", "FILE", "-o", "OUT"],
+        &["vertices", "faces"],
+    ),
+    (
+        &["transform", "--translate", "-1,2,-3.5", "FILE", "-o", "OUT"],
+        &["vertices", "faces", "import", "lost"],
+    ),
     (
         &["transform", "--scale", "-2", "--rotate", "-1,0,0,-90", "--origin", "center", "FILE", "-o", "OUT"],
         &["vertices", "faces"],
@@ -36,7 +60,10 @@ const COMMANDS: [(&[&str], &[&str]); 22] = [
     (&["naked-edges", "FILE"], &["loops", "chains"]),
     (&["raycast", "FILE", "--origin", "-1,-2,-3", "--direction", "0.3,0.5,0.7"], &["hits", "import"]),
     (&["raycast", "FILE", "--origin", "-1,-2,-3", "--direction", "0.3,0.5,0.7", "--first"], &["hits"]),
-    (&["closest", "FILE", "--point", "-1,2,-3", "--to", "surface"], &["point", "distance", "element", "face", "signed_distance"]),
+    (
+        &["closest", "FILE", "--point", "-1,2,-3", "--to", "surface"],
+        &["point", "distance", "element", "face", "signed_distance"],
+    ),
 ];
 
 /// Runs all commands on a file; returns how many were refused.
@@ -90,7 +117,8 @@ fn every_command_answers_with_the_fields_of_the_contract() {
     assert_eq!(answer["centroid"].as_array().map(Vec::len), Some(3));
     let naked = json(&dir, &["closest", "bracket.ply", "--point", "0,0,0", "--to", "edge"]).1;
     let [a, b] = [0, 1].map(|i| naked["element"]["edge"][i].as_u64().expect("a vertex"));
-    let (code, answer) = json(&dir, &["collapse", "bracket.ply", "--edge", &format!("{a},{b}"), "-o", "c.ply"]);
+    let (code, answer) =
+        json(&dir, &["collapse", "bracket.ply", "--edge", &format!("{a},{b}"), "-o", "c.ply"]);
     assert!(code == 0 || answer["error"]["kind"] == "refused", "{answer}");
     if code == 0 {
         for field in ["vertices", "faces", "edge", "position", "import"] {
@@ -103,7 +131,11 @@ fn every_command_answers_with_the_fields_of_the_contract() {
 fn every_command_works_on_models_of_the_corpus() {
     let Some(files) = corpus() else { return };
     let dir = directory("contract_corpus");
-    let wanted = ["/clean/trimesh__featuretype.ply", "/clean/openmesh__sphere840.ply", "/clean/cgal__colored_tetra.ply"];
+    let wanted = [
+        "/clean/trimesh__featuretype.ply",
+        "/clean/openmesh__sphere840.ply",
+        "/clean/cgal__colored_tetra.ply",
+    ];
     let mut run = 0;
     for (file, _) in files.iter().filter(|(f, _)| wanted.iter().any(|w| f.ends_with(w))) {
         assert_eq!(commands_answer(&dir, file), 0, "{file}");
@@ -176,7 +208,10 @@ fn bad_values_are_refused_and_write_nothing() {
     for args in one {
         let (code, answer) = json(&dir, &args);
         assert_eq!(code, 1, "{args:?}: {answer}");
-        assert!(args[0] == "is-closed" || answer["error"]["message"].as_str().is_some_and(|m| !m.is_empty()), "{args:?}");
+        assert!(
+            args[0] == "is-closed" || answer["error"]["message"].as_str().is_some_and(|m| !m.is_empty()),
+            "{args:?}"
+        );
     }
     let two: Vec<Vec<&str>> = vec![
         write(&["weld"]),

@@ -28,9 +28,8 @@ impl Carried {
         let on_vertices = [self.normals.map(|c| c.index), self.colors.map(|c| c.index)];
         let on_corners = [self.corner_normals.map(|c| c.index), self.uvs.map(|c| c.index)];
         let on_faces = [self.groups.map(|c| c.index)];
-        let of = |kind, list: &[Option<u32>]| {
-            list.iter().flatten().map(move |&i| (kind, i)).collect::<Vec<_>>()
-        };
+        let of =
+            |kind, list: &[Option<u32>]| list.iter().flatten().map(move |&i| (kind, i)).collect::<Vec<_>>();
         [of(Kind::Vertex, &on_vertices), of(Kind::Corner, &on_corners), of(Kind::Face, &on_faces)].concat()
     }
 

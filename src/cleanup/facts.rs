@@ -97,11 +97,7 @@ pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
 /// let refused = inspect_with(&PolygonSoup::default(), Weld::Exact, Control::new(&mut stop));
 /// assert!(matches!(refused, Err(CleanError::Cancelled(_))));
 /// ```
-pub fn inspect_with(
-    soup: &PolygonSoup,
-    weld: Weld,
-    mut control: Control<'_>,
-) -> Result<Facts, CleanError> {
+pub fn inspect_with(soup: &PolygonSoup, weld: Weld, mut control: Control<'_>) -> Result<Facts, CleanError> {
     control.report("weld", 0.0)?;
     let mut pool = Pool::new(soup, weld, &mut control)?;
     control.report("match edges", 0.4)?;

@@ -19,8 +19,8 @@ mod derive;
 mod rule;
 mod store;
 
-pub use rule::{Event, Interpolate, Rule};
 pub(crate) use derive::{Origin, Walk};
+pub use rule::{Event, Interpolate, Rule};
 pub(crate) use store::{Columns, Dense, Kind, Store};
 
 use crate::mesh::dead;

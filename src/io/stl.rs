@@ -33,11 +33,7 @@ pub fn read_stl(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     super::read(bytes, super::Format::Stl, limits)
 }
 
-pub(super) fn read(
-    bytes: &[u8],
-    limits: &Limits,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::byte(0, Malformed::Empty));
     }
@@ -66,11 +62,7 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
     promised(bytes).is_some_and(|n| (length(n)..length(n + 1)).contains(&(bytes.len() as u64)))
 }
 
-fn read_binary(
-    bytes: &[u8],
-    limits: &Limits,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Loaded, ReadError> {
+fn read_binary(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let Some(wanted) = promised(bytes) else {
         return Err(ReadError::byte(bytes.len(), Malformed::Truncated("the header")));
     };
@@ -106,11 +98,7 @@ fn read_binary(
     Ok(Loaded { soup: PolygonSoup::new(positions, polygons), notes: notes.finish() })
 }
 
-fn read_ascii(
-    text: &[u8],
-    limits: &Limits,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Loaded, ReadError> {
+fn read_ascii(text: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let mut notes = Notes::default();
     let mut soup = PolygonSoup::default();
     let mut corners: Vec<u32> = Vec::new();

@@ -94,7 +94,10 @@ fn closest_elements_are_those_of_the_tutorials_loops_on_models() {
             let vertex = index.closest_vertex(p, ALL).expect("asked well").expect("a vertex");
             assert_eq!(vertex.point, plain.points[naive::closest_vertex(&plain, p).0], "{name}: {p}");
             let center = index.closest_face_center(p, ALL).expect("asked well").expect("a face");
-            assert!((center.distance - naive::closest_face_center(&plain, p).1).abs() <= slack, "{name}: {p}");
+            assert!(
+                (center.distance - naive::closest_face_center(&plain, p).1).abs() <= slack,
+                "{name}: {p}"
+            );
             let edge = index.closest_edge(p, ALL).expect("asked well").expect("an edge");
             assert!((edge.distance - naive::closest_edge(&plain, p)).abs() <= slack, "{name}: {p}");
             let surface = index.closest_point(p, ALL).expect("asked well").expect("a point");

@@ -110,9 +110,7 @@ fn collapsed_alike(name: &str, mesh: &Mesh, most: usize) -> [usize; 2] {
                     let isolated = pool.topology().isolated_vertices().len();
                     let before = mesh.vertices().filter(|&v| mesh.is_isolated(v)).count();
                     let built = Mesh::build(&pool).ok();
-                    built.is_some_and(|m| {
-                        isolated == before + 1 && counts(&m) == counts(mesh)
-                    })
+                    built.is_some_and(|m| isolated == before + 1 && counts(&m) == counts(mesh))
                 };
                 assert!(!is_same(theirs.pool()), "{name}: {error}");
                 done[1] += 1;

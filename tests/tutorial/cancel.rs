@@ -82,7 +82,8 @@ fn state(mesh: &Mesh) -> impl PartialEq + use<> {
 /// An inverted bumpy sphere, a box that lacks a face, and a corner data column.
 fn subject() -> Mesh {
     let mut noise = Noise(41);
-    let mut pool = shapes::both(&shapes::icosphere(3).reversed(), &crate::lidless(&shapes::cube_at(DVec3::X * 4.0)));
+    let mut pool =
+        shapes::both(&shapes::icosphere(3).reversed(), &crate::lidless(&shapes::cube_at(DVec3::X * 4.0)));
     pool.map_positions(|p| p + dvec3(noise.unit(), noise.unit(), noise.unit()) * 0.02).expect("finite");
     let mut mesh = shapes::mesh(&pool);
     mesh.compute_normals(Default::default());
@@ -99,7 +100,10 @@ fn every_long_call_tells_how_far_it_has_come() {
             ControlFlow::Continue(())
         };
         call(&mut subject(), Control::new(&mut hook)).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert!(!seen.is_empty() && seen.is_sorted() && seen.iter().all(|f| (0.0..=1.0).contains(f)), "{name}: {seen:?}");
+        assert!(
+            !seen.is_empty() && seen.is_sorted() && seen.iter().all(|f| (0.0..=1.0).contains(f)),
+            "{name}: {seen:?}"
+        );
     }
 }
 

@@ -5,8 +5,8 @@ use crate::{cavity, lidless, naive, volume, welded};
 use meshwright::cleanup::{CleanOptions, Weld, clean, index, inspect};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    BuildDefect, Crossing, IndexedMesh, Kind, Mesh, NotClosed, OutwardOptions, PolygonSoup, Ray, ReduceOptions, ReduceTarget,
-    Stopped, orient_outward, unify_winding,
+    BuildDefect, Crossing, IndexedMesh, Kind, Mesh, NotClosed, OutwardOptions, PolygonSoup, Ray,
+    ReduceOptions, ReduceTarget, Stopped, orient_outward, unify_winding,
 };
 
 /// The cube of twelve triangles.
@@ -182,7 +182,11 @@ fn volume_is_right_at_an_offset_of_a_million_where_the_plain_sum_is_not() {
         let ours = volume(&shapes::mesh(&far));
         assert!((ours - near).abs() < slack * near, "{offset}: {ours} {near}");
         let sum = naive::volume(&naive::Plain::from(&far));
-        assert!((sum - near).abs() > 1e3 * (ours - near).abs(), "{offset}: the plain sum is off by {}", sum - near);
+        assert!(
+            (sum - near).abs() > 1e3 * (ours - near).abs(),
+            "{offset}: the plain sum is off by {}",
+            sum - near
+        );
     }
     sphere = shapes::cube_at(DVec3::splat(1e6));
     assert_eq!(volume(&shapes::mesh(&sphere)), 1.0);

@@ -6,8 +6,8 @@ use crate::{by_place, cut, manifolds, models, somewhere};
 use meshwright::cleanup::{CleanOptions, Weld, clean, index, propose_tolerance};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    ClosestOptions, IndexedMesh, Mesh, OutwardOptions, Ray, ReduceOptions, ReduceTarget, Scheme, SmoothOptions,
-    SubdivideOptions, UnweldOptions, WeldOptions,
+    ClosestOptions, IndexedMesh, Mesh, OutwardOptions, Ray, ReduceOptions, ReduceTarget, Scheme,
+    SmoothOptions, SubdivideOptions, UnweldOptions, WeldOptions,
 };
 
 /// A closed shape of quads that are far from flat.
@@ -103,11 +103,13 @@ fn a_helper_proposes_a_tolerance_from_the_data_and_none_is_hidden() {
 
 #[test]
 fn what_was_merged_dropped_split_or_flipped_is_told_with_element_and_place() {
-    let mut soup = shapes::unwelded(&shapes::some_reversed(&shapes::both(&cube(), &cube_at(DVec3::ONE)), 5, 3));
+    let mut soup =
+        shapes::unwelded(&shapes::some_reversed(&shapes::both(&cube(), &cube_at(DVec3::ONE)), 5, 3));
     soup.polygons.push([0, 1, 99]);
     soup.polygons.push([0, 1, 0]);
     soup.positions[5].x += 1e-4;
-    let cleaned = clean(&soup, CleanOptions { weld: Weld::Within(1e-3), ..Default::default() }).expect("always");
+    let cleaned =
+        clean(&soup, CleanOptions { weld: Weld::Within(1e-3), ..Default::default() }).expect("always");
     let report = &cleaned.report;
     assert!(report.records.len() >= 4, "{report:?}");
     for record in &report.records {
@@ -164,7 +166,10 @@ fn the_same_input_gives_the_same_output_whatever_the_threads() {
     for (name, mesh) in named.chain(models) {
         let first = everything(&mesh);
         assert!(everything(&mesh.clone()) == first, "{name}");
-        assert!(everything(&Mesh::build(&mesh.to_indexed()).expect("a manifold")) == first, "{name}, built anew");
+        assert!(
+            everything(&Mesh::build(&mesh.to_indexed()).expect("a manifold")) == first,
+            "{name}, built anew"
+        );
         #[cfg(feature = "rayon")]
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");

@@ -46,7 +46,10 @@ fn rhinos_quad_that_names_its_last_corner_twice_is_a_triangle() {
     let cleaned = clean(&soup, CleanOptions::default()).expect("always answers");
     assert_eq!(cleaned.value.to_indexed(), pool);
     assert_eq!(cleaned.report.records.len(), 1);
-    assert_eq!((cleaned.report.records[0].kind, cleaned.report.records[0].element), (Kind::RepeatedCorner, Element::Face(1)));
+    assert_eq!(
+        (cleaned.report.records[0].kind, cleaned.report.records[0].element),
+        (Kind::RepeatedCorner, Element::Face(1))
+    );
 }
 
 #[test]
@@ -97,8 +100,13 @@ fn closed_edge_manifold_vertex_manifold_oriented_and_orientable_are_separate_ans
         ("nothing", IndexedMesh::default(), [false, true, true, true, true]),
     ] {
         let t = pool.topology();
-        let answers =
-            [t.is_closed(), t.is_edge_manifold(), t.is_vertex_manifold(), t.is_oriented(), t.orientable().is_ok()];
+        let answers = [
+            t.is_closed(),
+            t.is_edge_manifold(),
+            t.is_vertex_manifold(),
+            t.is_oriented(),
+            t.orientable().is_ok(),
+        ];
         assert_eq!(answers, expected, "{name}");
         // Each no has witnesses, each yes has none.
         assert_eq!(t.nonmanifold_edges().next().is_none(), answers[1], "{name}");

@@ -179,11 +179,7 @@ fn by_regions(p: DVec3, [a, b, c]: [DVec3; 3], as_printed: bool) -> DVec3 {
     }
     let (v, w) = (vb / (va + vb + vc), vc / (va + vb + vc));
     if as_printed {
-        return dvec3(
-            a.x + ab.x * v + ac.x * w,
-            a.y + ab.y * v + ac.x * w,
-            a.z + ab.z * v + ac.x * w,
-        );
+        return dvec3(a.x + ab.x * v + ac.x * w, a.y + ab.y * v + ac.x * w, a.z + ab.z * v + ac.x * w);
     }
     a + ab * v + ac * w
 }

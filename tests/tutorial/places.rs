@@ -5,7 +5,8 @@ use crate::shapes::{self, Noise, cube, fanned, mesh};
 use crate::{models, somewhere};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    ClosestOptions, Crossing, DeformOptions, Feature, IndexedMesh, Mesh, Ray, RayHit, ReduceOptions, ReduceTarget, Side,
+    ClosestOptions, Crossing, DeformOptions, Feature, IndexedMesh, Mesh, Ray, RayHit, ReduceOptions,
+    ReduceTarget, Side,
 };
 
 const ALL: ClosestOptions = ClosestOptions { max_distance: f64::INFINITY, isolated_vertices: true };
@@ -49,7 +50,10 @@ fn there_is_no_hidden_epsilon_at_the_start_of_a_ray() {
         let before = from(1.0f64.next_down());
         assert_eq!(before.len(), 1);
         assert!(before[0].t > 0.0 && before[0].t < naive::RAY_START, "the tutorial's loop would miss it");
-        assert!(naive::raycast(&Plain::from(&fanned(&cube())), dvec3(0.5, 0.25, 1.0f64.next_down()), DVec3::Z).is_empty());
+        assert!(
+            naive::raycast(&Plain::from(&fanned(&cube())), dvec3(0.5, 0.25, 1.0f64.next_down()), DVec3::Z)
+                .is_empty()
+        );
     }
 }
 
@@ -65,9 +69,13 @@ fn hits_tell_place_face_weights_feature_and_direction_in_order() {
             let ray = Ray::new(from, to - from).expect("a ray");
             let found = index.hits(&ray);
             assert!(found.is_sorted_by(|a, b| a.t <= b.t), "{name}");
-            assert_eq!((index.first_hit(&ray), index.is_hit(&ray)), (found.first().copied(), !found.is_empty()));
+            assert_eq!(
+                (index.first_hit(&ray), index.is_hit(&ray)),
+                (found.first().copied(), !found.is_empty())
+            );
             for h in found {
-                let at: DVec3 = h.corners.iter().zip(h.barycentrics).map(|(&v, w)| model.position(v) * w).sum();
+                let at: DVec3 =
+                    h.corners.iter().zip(h.barycentrics).map(|(&v, w)| model.position(v) * w).sum();
                 let slack = 1e-9 * (size + bounds.center().length());
                 assert!(at.distance(h.point) <= slack && ray.at(h.t).distance(h.point) <= slack, "{name}");
                 assert!(h.corners.iter().all(|&v| model.face_vertices(h.face).any(|w| w == v)), "{name}");
@@ -105,9 +113,8 @@ fn wrong_faces(pool: &IndexedMesh, queries: u32) -> f64 {
         let p = somewhere(&mut noise, 4.0);
         let near = index.closest_face(p, ALL).expect("asked well").expect("a face");
         let center = index.closest_face_center(p, ALL).expect("asked well").expect("a face");
-        let [a, b, c] = [0, 1, 2].map(|i| {
-            mesh.position(mesh.face_vertices(center.element).nth(i).expect("a triangle"))
-        });
+        let [a, b, c] =
+            [0, 1, 2].map(|i| mesh.position(mesh.face_vertices(center.element).nth(i).expect("a triangle")));
         let true_distance = naive::on_triangle(p, [a, b, c]).distance(p);
         assert!(true_distance >= near.distance - 1e-9);
         wrong += u32::from(true_distance > near.distance + 1e-9);
@@ -121,7 +128,10 @@ fn cylinder(n: u32) -> IndexedMesh {
         let (y, x) = (f64::from(i) / f64::from(n) * std::f64::consts::TAU).sin_cos();
         dvec3(x, y, z)
     };
-    let points = (0..n).map(|i| at(i, -2.0)).chain((0..n).map(|i| at(i, 2.0))).chain([dvec3(0., 0., -2.), dvec3(0., 0., 2.)]);
+    let points = (0..n)
+        .map(|i| at(i, -2.0))
+        .chain((0..n).map(|i| at(i, 2.0)))
+        .chain([dvec3(0., 0., -2.), dvec3(0., 0., 2.)]);
     let sides = (0..n).flat_map(|i| {
         let j = (i + 1) % n;
         [[i, j, n + j], [i, n + j, n + i], [j, i, 2 * n], [n + i, n + j, 2 * n + 1]]
@@ -169,7 +179,10 @@ fn the_nearest_point_knows_its_side_and_how_far_to_look() {
         let p = somewhere(&mut noise, 6.0);
         let near = index.closest_point(p, ALL).expect("asked well").expect("a point");
         assert_eq!(near.side, closed.contains(p).expect("asked well"));
-        assert_eq!(near.signed_distance(), if near.side == Side::Inside { -near.distance } else { near.distance });
+        assert_eq!(
+            near.signed_distance(),
+            if near.side == Side::Inside { -near.distance } else { near.distance }
+        );
         sides[usize::from(near.side == Side::Inside)] += 1;
         let short = ClosestOptions { max_distance: near.distance * 0.999, ..ALL };
         assert_eq!(index.closest_point(p, short), Ok(None));

@@ -5,8 +5,8 @@ use meshwright::cleanup::{CleanOptions, Weld, clean, inspect};
 use meshwright::glam::{DAffine3, DMat3, DMat4, DVec3};
 use meshwright::{
     ClosestOptions, DeformOptions, EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, OutwardOptions, Ray,
-    ReduceOptions, ReduceTarget, Scheme, SmoothMethod, SmoothOptions, SubdivideOptions, UnweldOptions, VertexKey,
-    WeldOptions, orient_outward,
+    ReduceOptions, ReduceTarget, Scheme, SmoothMethod, SmoothOptions, SubdivideOptions, UnweldOptions,
+    VertexKey, WeldOptions, orient_outward,
 };
 use std::fmt::Debug;
 
@@ -68,16 +68,28 @@ const ROWS: [Row; 65] = [
     ("mesh", "an index out of range", "IndexedError", |m| {
         told(IndexedMesh::from_triangles(m.to_indexed().positions().to_vec(), &[[0, 1, 99]]))
     }),
-    ("mesh", "a vertex moved to nowhere", "NonFinite", |m| told(m.set_position(m.vertices().last().expect("one"), DVec3::NAN))),
-    ("translate", "not finite", "NonFinite", |m| all([DVec3::NAN, DVec3::INFINITY].map(|by| told(m.translate(by))))),
+    ("mesh", "a vertex moved to nowhere", "NonFinite", |m| {
+        told(m.set_position(m.vertices().last().expect("one"), DVec3::NAN))
+    }),
+    ("translate", "not finite", "NonFinite", |m| {
+        all([DVec3::NAN, DVec3::INFINITY].map(|by| told(m.translate(by))))
+    }),
     ("translate", "beyond the range of numbers", "OutOfRange", |m| told(m.translate(DVec3::X * f64::MAX))),
-    ("scale", "factor not finite", "NonFinite", |m| all([NAN, INF, -INF].map(|s| told(m.scale(s, DVec3::ZERO))))),
+    ("scale", "factor not finite", "NonFinite", |m| {
+        all([NAN, INF, -INF].map(|s| told(m.scale(s, DVec3::ZERO))))
+    }),
     ("scale", "origin not finite", "NonFinite", |m| told(m.scale(2.0, DVec3::NAN))),
     ("scale", "factor of zero", "ZeroFactor", |m| all([0.0, -0.0].map(|s| told(m.scale(s, DVec3::ZERO))))),
-    ("scale per axis", "not finite", "NonFinite", |m| told(m.scale_axes(DVec3::new(1.0, NAN, 1.0), DVec3::ZERO))),
-    ("scale per axis", "one factor of zero", "ZeroFactor", |m| told(m.scale_axes(DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO))),
+    ("scale per axis", "not finite", "NonFinite", |m| {
+        told(m.scale_axes(DVec3::new(1.0, NAN, 1.0), DVec3::ZERO))
+    }),
+    ("scale per axis", "one factor of zero", "ZeroFactor", |m| {
+        told(m.scale_axes(DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO))
+    }),
     ("rotate", "axis of zero", "ZeroAxis", |m| told(m.rotate_degrees(DVec3::ZERO, 90.0, DVec3::ZERO))),
-    ("rotate", "axis not finite", "NonFinite", |m| told(m.rotate_degrees(DVec3::INFINITY, 90.0, DVec3::ZERO))),
+    ("rotate", "axis not finite", "NonFinite", |m| {
+        told(m.rotate_degrees(DVec3::INFINITY, 90.0, DVec3::ZERO))
+    }),
     ("rotate", "angle not finite", "NonFinite", |m| told(m.rotate_degrees(DVec3::X, NAN, DVec3::ZERO))),
     ("rotate", "origin not finite", "NonFinite", |m| told(m.rotate_degrees(DVec3::X, 90.0, DVec3::NAN))),
     ("affine map", "not finite", "NonFinite", |m| told(m.transform(&DAffine3::from_translation(DVec3::NAN)))),
@@ -96,16 +108,25 @@ const ROWS: [Row; 65] = [
     ("unweld", "no angle", "BadAngle", |m| {
         all([-1.0, 181.0, NAN].map(|degrees| told(m.unweld(UnweldOptions { degrees, ..Default::default() }))))
     }),
-    ("sharp edges", "no angle", "BadAngle", |m| all([-1.0, 181.0, NAN].map(|degrees| told(m.sharp_edges(degrees))))),
+    ("sharp edges", "no angle", "BadAngle", |m| {
+        all([-1.0, 181.0, NAN].map(|degrees| told(m.sharp_edges(degrees))))
+    }),
     ("clean", "tolerance below zero or no number", "BadTolerance", |m| {
         let soup = m.to_indexed().into();
-        all([-1.0, NAN, INF].map(|t| told(clean(&soup, CleanOptions { weld: Weld::Within(t), ..Default::default() }))))
+        all([-1.0, NAN, INF]
+            .map(|t| told(clean(&soup, CleanOptions { weld: Weld::Within(t), ..Default::default() }))))
     }),
-    ("inspect", "tolerance no number", "BadTolerance", |m| told(inspect(&m.to_indexed().into(), Weld::Within(NAN)))),
-    ("subdivide", "too many levels", "TooLarge", |m| subdivide(m, SubdivideOptions { levels: 99, ..Default::default() })),
+    ("inspect", "tolerance no number", "BadTolerance", |m| {
+        told(inspect(&m.to_indexed().into(), Weld::Within(NAN)))
+    }),
+    ("subdivide", "too many levels", "TooLarge", |m| {
+        subdivide(m, SubdivideOptions { levels: 99, ..Default::default() })
+    }),
     ("subdivide", "a crease angle that is none", "BadAngle", |m| {
         let scheme = Scheme::Loop;
-        all([-1.0, NAN].map(|a| subdivide(m, SubdivideOptions { scheme, crease_degrees: Some(a), ..Default::default() })))
+        all([-1.0, NAN].map(|a| {
+            subdivide(m, SubdivideOptions { scheme, crease_degrees: Some(a), ..Default::default() })
+        }))
     }),
     ("subdivide", "a dead face", "MissingFace", |m| {
         subdivide(m, SubdivideOptions { only: Some(&[FaceKey::default()]), ..Default::default() })
@@ -126,15 +147,20 @@ const ROWS: [Row; 65] = [
         subdivide(m, SubdivideOptions { scheme: Scheme::Midpoint, creases, ..Default::default() })
     }),
     ("smooth", "lambda out of range", "BadLambda", |m| {
-        all([0.0, -0.5, 1.01, NAN, INF].map(|lambda| smooth(m, SmoothOptions { lambda, ..Default::default() })))
+        all([0.0, -0.5, 1.01, NAN, INF]
+            .map(|lambda| smooth(m, SmoothOptions { lambda, ..Default::default() })))
     }),
     ("smooth", "lambda of an implicit step out of range", "BadLambda", |m| {
         let method = SmoothMethod::Implicit;
-        all([0.0, -0.5, 10001.0, NAN, INF].map(|lambda| smooth(m, SmoothOptions { method, lambda, ..Default::default() })))
+        all([0.0, -0.5, 10001.0, NAN, INF]
+            .map(|lambda| smooth(m, SmoothOptions { method, lambda, ..Default::default() })))
     }),
     ("smooth", "mu not below -lambda", "BadMu", |m| {
         all([-0.5, 0.3, NAN, -INF].map(|mu| {
-            smooth(m, SmoothOptions { method: SmoothMethod::Taubin { mu }, lambda: 0.5, ..Default::default() })
+            smooth(
+                m,
+                SmoothOptions { method: SmoothMethod::Taubin { mu }, lambda: 0.5, ..Default::default() },
+            )
         }))
     }),
     ("smooth", "a dead vertex locked", "Missing", |m| {
@@ -163,7 +189,11 @@ const ROWS: [Row; 65] = [
     }),
     ("collapse", "a dead half-edge", "Missing", |m| {
         let dead = stranger();
-        all([told(m.collapse(dead, DVec3::ZERO)), told(m.collapse_to_midpoint(dead)), told(m.collapse_into_target(dead))])
+        all([
+            told(m.collapse(dead, DVec3::ZERO)),
+            told(m.collapse_to_midpoint(dead)),
+            told(m.collapse_into_target(dead)),
+        ])
     }),
     ("collapse", "a place that is not finite", "NonFinite", |m| {
         let h = m.boundary_halfedges().chain(m.halfedges()).next().expect("one");
@@ -220,8 +250,12 @@ const ROWS: [Row; 65] = [
     ("unweld", "no mesh, and no angle", "BadAngle", |_| {
         told(Mesh::default().unweld(UnweldOptions { degrees: NAN, ..Default::default() }))
     }),
-    ("reduce", "no mesh, and a target of no faces", "NoFaces", |_| reduce(&mut Mesh::default(), ReduceTarget::Faces(0))),
-    ("closest", "no mesh, and a point that is not finite", "NonFinitePoint", |_| all(closest(&Mesh::default(), DVec3::NAN, INF))),
+    ("reduce", "no mesh, and a target of no faces", "NoFaces", |_| {
+        reduce(&mut Mesh::default(), ReduceTarget::Faces(0))
+    }),
+    ("closest", "no mesh, and a point that is not finite", "NonFinitePoint", |_| {
+        all(closest(&Mesh::default(), DVec3::NAN, INF))
+    }),
 ];
 
 #[test]
@@ -235,7 +269,8 @@ fn bad_input_gets_a_typed_error_and_changes_nothing() {
         for (operation, what, error, call) in ROWS {
             let mut mesh = shapes::mesh(&pool);
             mesh.compute_normals(Default::default());
-            let links = |m: &Mesh| m.halfedges().map(|h| (h, m.next(h), m.origin(h), m.face(h))).collect::<Vec<_>>();
+            let links =
+                |m: &Mesh| m.halfedges().map(|h| (h, m.next(h), m.origin(h), m.face(h))).collect::<Vec<_>>();
             let before = (mesh.to_indexed(), mesh.numbering(), links(&mesh));
             let answer = call(&mut mesh);
             // At size 1 nothing leaves the range by moving a little.

@@ -3,7 +3,9 @@
 use crate::shapes::{grid, icosphere, mesh};
 use crate::{two_squares, with_x};
 use meshwright::glam::DVec3;
-use meshwright::{Column, ColumnError, ColumnValues, EdgeKey, FaceKey, HalfedgeKey, Mesh, NormalWeight, Rule, VertexKey};
+use meshwright::{
+    Column, ColumnError, ColumnValues, EdgeKey, FaceKey, HalfedgeKey, Mesh, NormalWeight, Rule, VertexKey,
+};
 
 #[test]
 fn a_boundary_half_edge_has_no_corner() {

@@ -71,9 +71,8 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
 }
 
 fn inspect(session: &mut Session, soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
-    session.timed(Phase::Run, || {
-        progress::shown(|hook| cleanup::inspect_with(soup, weld, Control::new(hook)))
-    })
+    session
+        .timed(Phase::Run, || progress::shown(|hook| cleanup::inspect_with(soup, weld, Control::new(hook))))
 }
 
 fn summary(f: &Facts) -> String {

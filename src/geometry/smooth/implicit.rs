@@ -44,7 +44,8 @@ pub(super) fn step(
         }
         out.iter_mut().zip(&free).filter(|f| !f.1).for_each(|(o, _)| *o = DVec3::ZERO);
     };
-    let precondition = |v: usize, r: DVec3| if free[v] { r / (sums[v] * (1.0 + lambda)) } else { DVec3::ZERO };
+    let precondition =
+        |v: usize, r: DVec3| if free[v] { r / (sums[v] * (1.0 + lambda)) } else { DVec3::ZERO };
     let dot = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(&a, &b)| a * b).sum::<DVec3>();
     // Of each coordinate its own quotient; nothing where nothing is left to do.
     let quotient = |a: DVec3, b: DVec3| DVec3::select(b.cmpgt(DVec3::ZERO), a / b, DVec3::ZERO);

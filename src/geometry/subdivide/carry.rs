@@ -174,13 +174,7 @@ pub(super) enum Spot {
 }
 
 /// The columns at a level that cuts some edges in two: for each part its face, for each of its corners the spot.
-pub(super) fn by_spots(
-    columns: &mut Columns,
-    dense: &Dense,
-    finer: &Dense,
-    source: &[u32],
-    spots: &[Spot],
-) {
+pub(super) fn by_spots(columns: &mut Columns, dense: &Dense, finer: &Dense, source: &[u32], spots: &[Spot]) {
     let old = dense.positions.len();
     let starts = dense.polygons.starts();
     let mut parts = vec![0u32; dense.polygons.len()];
@@ -191,9 +185,11 @@ pub(super) fn by_spots(
         source: &'p [u32],
         spots: &'p [Spot],
     ) -> impl Iterator<Item = (u32, usize, &'p [Spot])> {
-        source.iter().zip(polygons.starts()).zip(polygons.iter()).map(|((&f, &first), part)| {
-            (f, first, &spots[first..first + part.len()])
-        })
+        source
+            .iter()
+            .zip(polygons.starts())
+            .zip(polygons.iter())
+            .map(|((&f, &first), part)| (f, first, &spots[first..first + part.len()]))
     }
     let sources = |f: u32, spot: Spot| -> Sources {
         let (first, end) = (starts[f as usize] as u32, starts[f as usize + 1] as u32);

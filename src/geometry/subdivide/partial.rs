@@ -1,7 +1,7 @@
 //! Midpoint subdivision of some faces; neighbours are closed so that no vertex lies on an edge.
 
-use super::dense::Dense;
 use super::carry::{self, Spot};
+use super::dense::Dense;
 use super::{Meter, SubdivideError, build, followed};
 use crate::column::Columns;
 use crate::matching::NONE;

@@ -1,8 +1,8 @@
 //! Kobbelt's scheme: a centre in every triangle, every inner edge flipped; boundary edges cut in three at every second
 //! level.
 
-use super::dense::Dense;
 use super::carry::{Born, Sources, old_vertices, part, split};
+use super::dense::Dense;
 use super::{Meter, SubdivideError, followed};
 use crate::column::{Columns, Kind, Origin};
 use crate::matching::NONE;

@@ -48,11 +48,7 @@ pub fn read_obj(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     super::read(bytes, super::Format::Obj, limits)
 }
 
-pub(super) fn read(
-    bytes: &[u8],
-    limits: &Limits,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let text = without_mark(bytes)?;
     watch.leave_after_bytes(0.5);
     let mut filter = Filter::new(text, *limits, watch);

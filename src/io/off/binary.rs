@@ -8,11 +8,7 @@ use glam::DVec3;
 
 /// `OFF BINARY`: counts and indices of 32 bits, coordinates in single precision; big-endian by the book, little-endian in
 /// life; with or without a colour count behind each face.
-pub(super) fn read(
-    bytes: &[u8],
-    limits: &Limits,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let start = bytes.iter().position(|&b| b == b'\n').map_or(bytes.len(), |i| i + 1);
     let data = &bytes[start..];
     let word = |i: usize| data.get(4 * i..4 * i + 4).and_then(|b| <[u8; 4]>::try_from(b).ok());

@@ -34,11 +34,7 @@ pub fn read_off(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     super::read(bytes, super::Format::Off, limits)
 }
 
-pub(super) fn read(
-    bytes: &[u8],
-    limits: &Limits,
-    watch: &mut Watch<'_, '_>,
-) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let text = without_mark(bytes)?;
     let mut file = Words::new(text);
     let header = Header::read(&mut file)?;

@@ -1,8 +1,8 @@
 //! Elements as text, one a line.
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
-use super::super::watch::Watch;
 use super::super::text::{Lines, integer, number_at, shown, words};
+use super::super::watch::Watch;
 use super::header::{Element, Header, Scalar};
 use super::read::{Reader, Role};
 use crate::PolygonSoup;
