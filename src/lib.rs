@@ -21,6 +21,8 @@
 //! `io` (default): readers and writers for OBJ, STL, PLY and OFF. `serde`: accounts, facts and soups serialise.
 //! `rayon`: bulk work on several threads; results are the same with and without.
 
+#[doc = include_str!("accounts.md")]
+pub mod accounts {}
 mod arena;
 mod attributes;
 mod build;
@@ -89,8 +91,8 @@ pub use query::{
     SelfIntersections, Side, SolidIndex, TurnedOutward, orient_outward,
 };
 pub use report::{
-    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
-    Step, StepSummary,
+    Attribute, Element, Extent, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation,
+    Report, Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
 pub use topology::{

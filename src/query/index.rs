@@ -82,8 +82,7 @@ impl Mesh {
     pub fn index_with(&self, mut control: Control<'_>) -> Result<MeshIndex<'_>, Cancelled> {
         control.report("triangulate", 0.0)?;
         let (triangles, faces) = self.cut_triangles();
-        let tree =
-            control.part(0.1, 1.0, |control| Tree::new_with(&self.positions, &triangles, &faces, control))?;
+        let tree = Tree::new_with(&self.positions, &triangles, &faces, control.part(0.1, 1.0))?;
         Ok(self.indexed(tree))
     }
 

@@ -74,11 +74,10 @@ impl Mesh {
         &self,
         mut options: SelfIntersectionOptions<'_>,
     ) -> Result<SelfIntersections, Cancelled> {
-        let index = options.control.part(0.0, 0.5, |control| self.index_with(control))?;
+        let index = self.index_with(options.control.part(0.0, 0.5))?;
         let max_listed = options.max_listed;
-        options.control.part(0.5, 1.0, |control| {
-            index.self_intersections(SelfIntersectionOptions { max_listed, control })
-        })
+        let control = options.control.part(0.5, 1.0);
+        index.self_intersections(SelfIntersectionOptions { max_listed, control })
     }
 }
 

@@ -220,7 +220,7 @@ pub(crate) fn judge(
     let tree = if several {
         let shapes: Vec<[u32; 3]> = solid.iter().map(|&t| triangles[t as usize]).collect();
         let parts: Vec<u32> = solid.iter().map(|&t| part_of[t as usize]).collect();
-        Some(control.part(0.1, 0.3, |control| Tree::new_with(positions, &shapes, &parts, control))?)
+        Some(Tree::new_with(positions, &shapes, &parts, control.part(0.1, 0.3))?)
     } else {
         None
     };
@@ -232,7 +232,7 @@ pub(crate) fn judge(
         let mut verdict =
             Verdict { closed: closed[part], depth: 0, crosses: false, confidence: 0.0, reverse: false };
         if !closed[part] {
-            let mean = control.part(from, to, |control| mean_winding(own, places, control))?;
+            let mean = mean_winding(own, places, control.part(from, to))?;
             verdict.confidence = (2.0 * mean.abs()).min(1.0);
             verdict.reverse = mean < 0.0 && verdict.confidence >= min_confidence;
             verdicts.push(verdict);

@@ -112,14 +112,9 @@ pub(crate) fn with_flipped(mesh: &IndexedMesh, flip: &[bool], step: Step) -> Out
         attributes.reverse_corners(polygons.starts()[face]..polygons.starts()[face + 1]);
         let corners = &mesh.polygons()[face];
         let middle = corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
-        report.records.push(Record {
-            step,
-            kind: Kind::FlippedFace,
-            element: Element::Face(face as u32),
-            place: Some(middle),
-        });
+        report.records.push(Record::new(step, Kind::FlippedFace, Element::Face(face as u32), Some(middle)));
     }
-    report.steps.push(StepSummary { step, changed: report.records.len(), tolerance: None });
+    report.steps.push(StepSummary::new(step, report.records.len()));
     Outcome {
         value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, None).carrying(attributes),
         report,

@@ -119,9 +119,20 @@ impl Mesh {
     /// assert!(mesh.is_closed() && mesh.faces().all(|f| mesh.degree(f) == 4));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn fill_holes(&mut self, mut options: FillHolesOptions<'_>) -> Result<FilledHoles, FillHolesError> {
+    pub fn fill_holes(&mut self, options: FillHolesOptions<'_>) -> Result<FilledHoles, FillHolesError> {
+        self.fill_holes_beside(options, |_| true)
+    }
+
+    /// [`fill_holes`](Self::fill_holes) along the loops that run along a wanted face, given by its slot; others are not told
+    /// of.
+    pub(crate) fn fill_holes_beside(
+        &mut self,
+        mut options: FillHolesOptions<'_>,
+        is_wanted: impl Fn(u32) -> bool,
+    ) -> Result<FilledHoles, FillHolesError> {
         options.check()?;
-        let loops = self.loop_firsts();
+        let mut loops = self.loop_firsts();
+        loops.retain(|&h| is_wanted(self.face[h as usize ^ 1]));
         let plans = self.plan_holes(&loops, 0..loops.len(), &mut options)?;
         let mut account = FilledHoles::default();
         for (&first, plan) in loops.iter().zip(plans) {
