@@ -1,11 +1,12 @@
 //! Long calls: each tells how far it has come, and cancelled at any moment leaves the mesh as it was.
 
 use crate::shapes::{self, Noise};
-use meshwright::cleanup::{CleanOptions, Weld, clean, clean_indexed};
+use meshwright::cleanup::{CleanOptions, Profile, Weld, clean, clean_indexed, index_with, inspect_with};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    Control, DeformOptions, FaceKey, Mesh, OutwardOptions, Progress, ReduceOptions, ReduceTarget, Scheme,
-    SmoothMethod, SmoothOptions, SubdivideOptions, UnweldOptions, WeldOptions, orient_outward,
+    ClosestOptions, Control, DeformOptions, FaceKey, FillHolesOptions, Mesh, OutwardOptions, Progress, Ray,
+    ReduceOptions, ReduceTarget, Scheme, SelfIntersectionOptions, SliverOptions, SmoothMethod, SmoothOptions,
+    SubdivideOptions, UnweldOptions, WeldOptions, orient_outward, unify_winding_with,
 };
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -37,7 +38,7 @@ fn reduced(mesh: &mut Mesh, target: ReduceTarget, control: Control<'_>) -> Resul
     Ok(())
 }
 
-const CALLS: [(&str, Call); 20] = [
+const CALLS: [(&str, Call); 31] = [
     ("weld", |m, control| Ok(drop(m.weld(WeldOptions { tolerance: 1e-3, control })?))),
     ("weld exactly", |m, control| Ok(drop(m.weld(WeldOptions { tolerance: 0.0, control })?))),
     ("unweld", |m, control| Ok(drop(m.unweld(UnweldOptions { degrees: 10.0, control })?))),
@@ -70,7 +71,36 @@ const CALLS: [(&str, Call); 20] = [
     ("clean to a pool", |m, control| {
         Ok(drop(clean_indexed(&m.to_indexed().into(), CleanOptions { control, ..Default::default() })?))
     }),
+    ("clean to a solid", |m, control| {
+        let options = CleanOptions { profile: Profile::Solid, control, ..Default::default() };
+        Ok(drop(clean(&m.to_indexed().into(), options)?))
+    }),
+    ("fill holes", |m, control| Ok(drop(m.fill_holes(FillHolesOptions { control, ..Default::default() })?))),
+    ("resolve slivers", |m, control| {
+        Ok(drop(m.resolve_slivers(SliverOptions { tolerance: 0.05, control })?))
+    }),
+    ("self-intersections", |m, control| {
+        Ok(drop(m.self_intersections(SelfIntersectionOptions { control, ..Default::default() })?))
+    }),
+    ("build", |m, control| Ok(drop(Mesh::build_with(&m.to_indexed(), control)?))),
+    ("index", |m, control| Ok(drop(m.index_with(control)?))),
+    ("cast rays", |m, control| {
+        let rays: Vec<Ray> =
+            points(m).into_iter().map(|p| Ray::new(p, DVec3::ONE)).collect::<Result<_, _>>()?;
+        Ok(drop(m.index().hits_batch_with(&rays, control)?))
+    }),
+    ("nearest points", |m, control| {
+        Ok(drop(m.index().closest_point_batch_with(&points(m), ClosestOptions::default(), control)?))
+    }),
+    ("unify", |m, control| Ok(drop(unify_winding_with(&m.to_indexed().topology(), control)?))),
+    ("inspect", |m, control| Ok(drop(inspect_with(&m.to_indexed().into(), Weld::Exact, control)?))),
+    ("weld a soup", |m, control| Ok(drop(index_with(&m.to_indexed().into(), Weld::Within(1e-3), control)?))),
 ];
+
+/// Points to ask about.
+fn points(mesh: &Mesh) -> Vec<DVec3> {
+    mesh.vertices().map(|v| mesh.position(v) * 1.1).collect()
+}
 
 /// What a mesh is, keys included.
 fn state(mesh: &Mesh) -> impl PartialEq + use<> {
@@ -128,7 +158,7 @@ fn a_long_call_cancelled_at_any_moment_leaves_the_mesh_as_it_was() {
             moments += 1;
         }
         // Deform is told of every half million vertices, all others more often.
-        assert!(moments >= 2 || name == "deform", "{name}: {moments}");
+        assert!(moments >= 2 || (name == "deform" && moments == 1), "{name}: {moments}");
     }
 }
 
