@@ -31,6 +31,8 @@ pub enum Element {
     Corner([u32; 2]),
     /// Two faces by their indices, the lower first.
     Faces([u32; 2]),
+    /// A vertex that lies on an edge: the vertex, then the two vertices that the edge joins, the lower index first.
+    VertexOnEdge([u32; 3]),
 }
 
 impl fmt::Display for Element {
@@ -40,6 +42,7 @@ impl fmt::Display for Element {
             Self::Face(face) => write!(f, "face {face}"),
             Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
             Self::Corner([face, corner]) => write!(f, "corner {corner} of face {face}"),
+            Self::VertexOnEdge([v, a, b]) => write!(f, "vertex {v} on edge {a}-{b}"),
             Self::Faces([a, b]) => write!(f, "faces {a} and {b}"),
         }
     }

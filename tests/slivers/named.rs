@@ -323,3 +323,14 @@ fn columns_checkpoints_and_the_record_of_changes_see_every_step() {
     mesh.restore(checkpoint).unwrap();
     assert_eq!(mesh.to_indexed(), before);
 }
+
+#[cfg(feature = "serde")]
+#[test]
+fn the_account_serialises() {
+    let mut mesh = cube();
+    let e = edge(&mesh, 0, 1);
+    put_cap(&mut mesh, e, 0.3, false);
+    let json = serde_json::to_value(resolve(&mut mesh)).unwrap();
+    assert_eq!((&json["found"], &json["resolved"][0]["action"]), (&1.into(), &"merged".into()));
+    assert_eq!(json["resolved"][0]["sliver"]["kind"], SliverKind::Cap.as_str());
+}

@@ -1,6 +1,7 @@
 //! Random slivers put into shapes of every kind.
 
 use super::*;
+use meshwright::SliverObstacle;
 use proptest::prelude::*;
 use shapes::Noise;
 
@@ -53,11 +54,45 @@ fn shapes_of_all_kinds_are_resolved() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1_000))]
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
     fn slivers_put_into_closed_meshes_are_all_resolved(shape in 0usize..7, count in 1usize..40, seed in any::<u64>()) {
         let mut mesh = with_slivers(&shapes_of_all_kinds()[shape], count, seed);
         resolve(&mut mesh);
     }
+}
+
+#[test]
+fn in_an_open_mesh_only_what_has_no_width_between_two_places_of_the_boundary_is_left() {
+    for seed in 0..40 {
+        let mut mesh = with_slivers(&shapes::grid(5), 40, seed);
+        let tolerance = mesh.propose_sliver_tolerance();
+        let account = resolve_any(&mut mesh, tolerance);
+        assert!(
+            account.left.iter().all(|l| l.obstacle == SliverObstacle::Pinch),
+            "{seed} {:?}",
+            account.left
+        );
+    }
+}
+
+#[test]
+fn very_many_slivers_around_one_vertex_take_bounded_time() {
+    // A double cone over a ring that runs along a segment and back; the lower tip lies on it too.
+    let n = 20_000u32;
+    let x = |i: u32| (if i < n / 2 { f64::from(i) } else { f64::from(n - i) - 0.5 }) / f64::from(n / 2);
+    let tips = [dvec3(0.5001, 0., 0.), dvec3(0.5, 0., 1.)];
+    let points = tips.into_iter().chain((0..n).map(|i| dvec3(x(i), 0., 0.))).collect();
+    let faces = (0..n).flat_map(|i| {
+        let (a, b) = (2 + i, 2 + (i + 1) % n);
+        [vec![0, b, a], vec![1, a, b]]
+    });
+    let mut mesh = shapes::mesh(&shapes::pool(points, faces.collect()));
+    let start = std::time::Instant::now();
+    let tolerance = mesh.propose_sliver_tolerance();
+    let account = mesh.resolve_slivers(SliverOptions::new(tolerance)).unwrap();
+    let took = start.elapsed().as_secs_f64();
+    assert_eq!((account.found, account.left.len(), mesh.validate()), (20_000, 0, Ok(())));
+    assert!(took < 20.0);
 }

@@ -22,7 +22,7 @@ impl Run {
         let first = self.mesh.face_halfedge[f as usize];
         let h = self.mesh.loop_slots(first).nth(corner).unwrap_or(first);
         let done = match kind {
-            SliverKind::Needle => self.shrink(h),
+            SliverKind::Needle => self.shrink_any(f),
             SliverKind::Cap => self.merge(h),
             SliverKind::Flat => return self.cut(f),
         };
@@ -31,6 +31,33 @@ impl Run {
             let is_triangle = self.mesh.is_triangle(self.mesh.face_halfedge[f as usize]);
             if self.stage == 0 || !is_triangle { Err(obstacle) } else { self.collapse_any(f, obstacle) }
         })
+    }
+
+    /// Collapses one of the short edges of a face, the shortest first.
+    fn shrink_any(&mut self, f: u32) -> Result<Done, SliverObstacle> {
+        let mut short = self.edges_of(f);
+        short.retain(|e| f64::from_bits(e.0) <= self.gauge.tolerance);
+        let mut refused = SliverObstacle::Topology;
+        for (i, (_, h)) in short.into_iter().enumerate() {
+            match self.shrink(h) {
+                Ok(done) => return Ok(done),
+                Err(obstacle) if i == 0 => refused = obstacle,
+                Err(_) => {}
+            }
+        }
+        Err(refused)
+    }
+
+    /// The edges of a face by length, whose bits order as it does.
+    fn edges_of(&self, f: u32) -> Vec<(u64, u32)> {
+        let length = |h: u32| {
+            let [a, b] = [h, h ^ 1].map(|h| self.at(self.mesh.origin[h as usize]));
+            a.distance(b).to_bits()
+        };
+        let loop_ = self.mesh.loop_slots(self.mesh.face_halfedge[f as usize]);
+        let mut edges: Vec<(u64, u32)> = loop_.map(|h| (length(h), h)).collect();
+        edges.sort_unstable();
+        edges
     }
 
     /// Collapses a short edge in the better direction.
@@ -92,17 +119,7 @@ impl Run {
 
     /// Collapses any edge of a triangle, the shortest first, whichever moves the surface little enough.
     fn collapse_any(&mut self, f: u32, refused: SliverObstacle) -> Result<Done, SliverObstacle> {
-        let first = self.mesh.face_halfedge[f as usize];
-        let mut edges: Vec<(u64, u32)> = self
-            .mesh
-            .loop_slots(first)
-            .map(|h| {
-                let [a, b] = [h, h ^ 1].map(|h| self.at(self.mesh.origin[h as usize]));
-                (a.distance(b).to_bits(), h)
-            })
-            .collect();
-        edges.sort_unstable();
-        let ways = edges.into_iter().flat_map(|(_, h)| [h, h ^ 1]);
+        let ways = self.edges_of(f).into_iter().flat_map(|(_, h)| [h, h ^ 1]);
         for h in ways {
             if let Ok(done) = self.collapse(h) {
                 return Ok(done);
