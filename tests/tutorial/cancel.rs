@@ -77,7 +77,7 @@ const CALLS: [(&str, Call); 31] = [
     }),
     ("fill holes", |m, control| Ok(drop(m.fill_holes(FillHolesOptions { control, ..Default::default() })?))),
     ("resolve slivers", |m, control| {
-        Ok(drop(m.resolve_slivers(SliverOptions { tolerance: 0.05, control })?))
+        Ok(drop(m.resolve_slivers(SliverOptions { tolerance: 0.13, control })?))
     }),
     ("self-intersections", |m, control| {
         Ok(drop(m.self_intersections(SelfIntersectionOptions { control, ..Default::default() })?))
