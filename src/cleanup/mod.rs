@@ -12,6 +12,7 @@ mod facts;
 mod fill;
 mod fins;
 mod manifold;
+mod near;
 mod open;
 mod outward;
 mod pair;
@@ -22,6 +23,8 @@ mod slivers;
 mod solid;
 mod split;
 mod step;
+mod stitch;
+mod tolerance;
 mod weld;
 
 pub use account::{Account, FaceTally, LostSummary, SCHEMA};
@@ -31,7 +34,8 @@ pub use fill::fill_holes;
 pub use fins::drop_fins;
 pub use outward::turn_outward;
 pub use slivers::resolve_slivers;
-pub use weld::propose_tolerance;
+pub use stitch::stitch;
+pub use tolerance::{ProposedTolerance, propose_tolerance, propose_tolerance_with_reasons};
 
 use crate::report::{Outcome, Report};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
@@ -232,11 +236,16 @@ pub fn index_with(
 ) -> Result<Outcome<IndexedMesh>, CleanError> {
     control.report("weld", 0.0)?;
     // The pool is the first two fifths of a clean-up, and nearly all there is to this.
-    let mut pool = Pool::new(soup, weld, &mut control.part(0.0, 2.0))?;
+    let pool = Pool::new(soup, weld, &mut control.part(0.0, 2.0))?;
     control.report("carry attributes", 0.8)?;
+    Ok(outcome(pool))
+}
+
+/// A pool as it stands, with its account.
+fn outcome(mut pool: Pool<'_>) -> Outcome<IndexedMesh> {
     let mut carried = pool.carry_welded();
     let value = pool.lend(std::mem::take(&mut carried.attributes));
     let (report, maps) = pool.account(value.positions());
     let report = Report { not_carried: carried.not_carried(), lost_values: carried.lost_values(), ..report };
-    Ok(Outcome { value, report, maps })
+    Outcome { value, report, maps }
 }

@@ -4,6 +4,7 @@ use super::carry::{self, Carried};
 use super::manifold::{drop_duplicates, make_manifold};
 use super::pool::Pool;
 use super::solid::{Names, Stage, solidify};
+use super::stitch::stitch_pool;
 use super::{CleanError, CleanOptions, Profile, Sources, split};
 use crate::build::assemble;
 use crate::matching::{Chains, Matching};
@@ -81,6 +82,12 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
     control.report("drop duplicates", 0.5)?;
     let mut matching = Matching::new(pool.positions.len(), &pool.polygons);
     if drop_duplicates(&mut pool, &matching) {
+        matching = Matching::new(pool.positions.len(), &pool.polygons);
+    }
+    if profile == Profile::Solid
+        && let Some(reach) = pool.reach()
+        && stitch_pool(&mut pool, &matching, reach, control)?
+    {
         matching = Matching::new(pool.positions.len(), &pool.polygons);
     }
     control.report("pair faces", 0.6)?;

@@ -180,6 +180,10 @@ impl Names {
                 [Element::Face(f), _] | [_, Element::Face(f)] => Element::Face(f),
                 [other, _] => other,
             },
+            Element::VertexOnEdge([v, a, b]) => {
+                let [a, b] = [a, b].map(vertex);
+                Element::VertexOnEdge([vertex(v), a.min(b), a.max(b)])
+            }
         }
     }
 

@@ -25,3 +25,5 @@ pub use intersections::{FacePair, SelfIntersectionOptions, SelfIntersections};
 pub use mass::MassProperties;
 pub use outward::{OutwardError, OutwardOptions, OutwardPart, TurnedOutward, orient_outward};
 pub use ray::{Crossing, Ray, RayError, RayHit};
+
+pub(crate) use nearest::segment_foot;

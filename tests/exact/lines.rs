@@ -35,17 +35,7 @@ fn span(t: &Triangle, origin: Point, direction: Point) -> Option<[Point; 2]> {
     }
     let on_line = |x: Point| x.minus(origin).cross(direction).is_zero();
     let mut met: Vec<Point> = t.at.into_iter().filter(|&x| on_line(x)).collect();
-    for i in 0..3 {
-        let [p, q] = t.edge(i);
-        // p + s (q - p) with (p + s (q - p) - o) x d = 0.
-        let (m, along) = (p.minus(origin).cross(direction), q.minus(p).cross(direction));
-        if !along.is_zero() && m.cross(along).is_zero() {
-            let x = p.plus(q.minus(p), -m.dot(along) * along.d, along.dot(along) * m.d);
-            if is_on(x, [p, q]) && on_line(x) {
-                met.push(x);
-            }
-        }
-    }
+    met.extend((0..3).filter_map(|i| on_edge(t.edge(i), origin, direction)));
     let order =
         |a: &Point, b: &Point| compare(parameter(*a, origin, direction), parameter(*b, origin, direction));
     Some([met.iter().copied().min_by(order)?, met.iter().copied().max_by(order)?])
@@ -74,19 +64,17 @@ pub(crate) fn hits(all: &[Triangle], origin: Point, direction: Point) -> Vec<Eve
     let met: Vec<(usize, [Point; 2])> =
         (0..all.len()).filter_map(|i| Some((i, span(&all[i], origin, direction)?))).collect();
     let on_line = |x: Point| x.minus(origin).cross(direction).is_zero();
-    let meets = |[p, q]: [Point; 2]| {
-        let on_it = |x: &Point| is_on(*x, [p, q]);
-        met.iter().flat_map(|m| m.1).any(|x| on_it(&x)) || on_line(p) || on_line(q)
-    };
-    // Triangles hang together at a vertex on the line, or at an edge that the line meets.
+    let is_ahead = |x: Point| parameter(x, origin, direction).0 >= 0;
+    // Triangles hang together at a vertex on the line, or at an edge that the line meets; not behind the origin.
     let share = |a: &Triangle, b: &Triangle| {
         let same = |i: usize, j: usize| a.vertices[i] == b.vertices[j];
         (0..3).any(|i| {
             (0..3).any(|j| {
                 let edge = same(i, (j + 1) % 3)
                     && same((i + 1) % 3, j)
-                    && (a.face == b.face || a.is_edge[i] && b.is_edge[j]);
-                same(i, j) && on_line(a.at[i]) || edge && meets(a.edge(i))
+                    && (a.face == b.face || a.is_side[i] && b.is_side[j]);
+                same(i, j) && on_line(a.at[i]) && is_ahead(a.at[i])
+                    || edge && on_edge(a.edge(i), origin, direction).is_some_and(is_ahead)
             })
         })
     };
@@ -115,13 +103,14 @@ pub(crate) fn hits(all: &[Triangle], origin: Point, direction: Point) -> Vec<Eve
             (0..3).any(|k| {
                 let (a, b) = (all[i].vertices[k], all[i].vertices[(k + 1) % 3]);
                 let has = |t: &Triangle, v: u32, w: u32| {
-                    (0..3).any(|j| t.vertices[j] == v && t.vertices[(j + 1) % 3] == w)
+                    (0..3).any(|j| t.is_side[j] && t.vertices[j] == v && t.vertices[(j + 1) % 3] == w)
                 };
                 let is_open =
                     |v: u32, w: u32| all.iter().any(|t| has(t, v, w)) && !all.iter().any(|t| has(t, w, v));
                 let at_vertex = on_line(all[i].at[k])
                     && all.iter().flat_map(|t| t.vertices).any(|w| is_open(a, w) || is_open(w, a));
-                at_vertex || is_open(a, b) && meets_edge(all[i].edge(k), origin, direction)
+                at_vertex
+                    || all[i].is_side[k] && is_open(a, b) && meets_edge(all[i].edge(k), origin, direction)
             })
         });
         let sum = if begin.0 < 0 || is_rim { 0 } else { sum(all, &own, origin, direction) };
@@ -132,7 +121,7 @@ pub(crate) fn hits(all: &[Triangle], origin: Point, direction: Point) -> Vec<Eve
             let t = &all[i];
             let kind = if t.at.contains(&x) {
                 0
-            } else if (0..3).any(|k| t.is_edge[k] && is_on(x, t.edge(k))) {
+            } else if (0..3).any(|k| t.is_side[k] && is_on(x, t.edge(k))) {
                 1
             } else {
                 2
@@ -150,6 +139,17 @@ fn meets_edge(edge: [Point; 2], origin: Point, direction: Point) -> bool {
     let [p, q] = edge;
     let (a, b) = (p.minus(origin).cross(direction), q.minus(origin).cross(direction));
     a.cross(b).is_zero() && a.dot(b) <= 0
+}
+
+/// The one point that a line has in common with a segment that is not on it.
+fn on_edge([p, q]: [Point; 2], origin: Point, direction: Point) -> Option<Point> {
+    let (m, along) = (p.minus(origin).cross(direction), q.minus(p).cross(direction));
+    if along.is_zero() || !m.cross(along).is_zero() {
+        return None;
+    }
+    // p + s (q - p) with (p + s (q - p) - o) x d = 0.
+    let x = p.plus(q.minus(p), -m.dot(along) * along.d, along.dot(along) * m.d);
+    (is_on(x, [p, q]) && x.minus(origin).cross(direction).is_zero()).then_some(x)
 }
 
 /// How the triangles are passed in all by the line moved a little, in a direction in which it meets no edge.

@@ -85,6 +85,8 @@ pub(crate) struct Triangle {
     pub(crate) vertices: [u32; 3],
     pub(crate) at: [Point; 3],
     /// Whether what leads from a corner to the next is an edge of the face, and no cut within it.
+    pub(crate) is_side: [bool; 3],
+    /// The same, where a cut beside a triangle without area counts as an edge.
     pub(crate) is_edge: [bool; 3],
 }
 
@@ -125,7 +127,7 @@ pub(crate) fn is_on(x: Point, [a, b]: [Point; 2]) -> bool {
     x.minus(a).cross(b.minus(a)).is_zero() && a.minus(x).dot(b.minus(x)) <= 0
 }
 
-/// The triangles of every face of a mesh, in order of faces; what lies beside a triangle without area is an edge.
+/// The triangles of every face of a mesh, in order of faces.
 pub(crate) fn triangles(mesh: &Mesh) -> Vec<Triangle> {
     let pool = mesh.to_indexed();
     let mut all = Vec::new();
@@ -147,7 +149,7 @@ pub(crate) fn triangles(mesh: &Mesh) -> Vec<Triangle> {
             };
             let is_edge = [0, 1, 2].map(|i| next(t[i]) == t[(i + 1) % 3]);
             let at = t.map(|v| Point::new(pool.positions()[v as usize]));
-            own.push(Triangle { face, vertices: t, at, is_edge });
+            own.push(Triangle { face, vertices: t, at, is_side: is_edge, is_edge });
         }
         let flat: Vec<[u32; 3]> = own.iter().filter(|t| !t.has_area()).map(|t| t.vertices).collect();
         for t in &mut own {

@@ -14,6 +14,7 @@ mod cross;
 mod forms;
 mod naive;
 mod places;
+mod properties;
 mod refusals;
 mod rows;
 

@@ -171,7 +171,9 @@ mod tests {
                 // Some chords are taken.
                 ring.chords = (0..n as u32)
                     .flat_map(|i| (i + 2..n as u32).map(move |j| [i, j]))
-                    .filter(|&[i, j]| (i, j) != (0, n as u32 - 1) && (i * 7 + j * 13 + seed as u32) % 4 == 0)
+                    .filter(|&[i, j]| {
+                        (i, j) != (0, n as u32 - 1) && (i * 7 + j * 13 + seed as u32).is_multiple_of(4)
+                    })
                     .collect();
                 let twin = all(0, n as u32 - 1, &ring, true);
                 let least = twin.iter().map(|t| weight(&ring, t)).min_by(|a, b| a.partial_cmp(b).unwrap());

@@ -60,7 +60,9 @@ impl Mesh {
     ///
     /// This is [`clean`] on the mesh: what the merges fold or double is repaired on record, faces that no longer fit
     /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
-    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. Welding again changes nothing. Linear time.
+    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. If all merges are taken back, nothing is on record.
+    /// Welding again changes nothing, but where surfaces cross so often that merges were taken back to make room for
+    /// others. Linear time.
     ///
     /// User columns come along under their keys, each by its [`Rule`](crate::Rule). A vertex that merged others has its own
     /// value at weight 1 and theirs at 0, as it stays where it is: `keep` and `interpolate` give its own, `average` the
@@ -84,6 +86,11 @@ impl Mesh {
         let WeldOptions { tolerance, control } = options;
         let options = CleanOptions { weld: Weld::Within(tolerance), control, ..Default::default() };
         let (mut outcome, sources) = clean_tracked(&self.to_indexed().into(), options)?;
+        // Merged and parted again, it is as it was: edges that had more faces in between are nobody's concern.
+        if !outcome.report.records.is_empty() && outcome.value.to_indexed() == self.to_indexed() {
+            outcome.report.records.clear();
+            outcome.report.steps.iter_mut().for_each(|step| step.changed = 0);
+        }
         let columns = columns::welded(self, &outcome.value, &outcome.maps.vertices, &sources);
         outcome.value.adopt_columns(columns);
         Ok(outcome)
