@@ -114,6 +114,8 @@ named! {
         Cap = "cap",
         /// A larger face without height, or that would be cut into triangles of which one has none; cut and resolved.
         FlatFace = "flat_face",
+        /// A face with height that went with slivers beside it; its neighbours cover its place.
+        AbsorbedFace = "absorbed_face",
         /// A face without height that could not be resolved; left.
         LeftSliver = "left_sliver",
         /// A part with fewer faces than the caller asked for; its faces were dropped.

@@ -27,8 +27,6 @@ struct Built {
     report: Report,
     maps: Maps,
     names: Names,
-    /// Faces at edges that were cut.
-    cut: Vec<u32>,
     tolerance: Option<f64>,
 }
 
@@ -37,7 +35,7 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
     let is_solid = profile == Profile::Solid;
     let pool = Pool::new(soup, weld, &mut control.part(0.0, if is_solid { 0.6 } else { 1.0 }))?;
     let built = build(pool, profile, &mut control.part(0.0, if is_solid { 0.6 } else { 1.0 }))?;
-    let Built { indexed, mesh, carried, report, maps, names, cut, tolerance } = built;
+    let Built { indexed, mesh, carried, report, maps, names, tolerance } = built;
     let report = Report { not_carried: carried.not_carried(), lost_values: carried.lost_values(), ..report };
     if !is_solid && debris.is_none() {
         return Ok(Cleaned { indexed: Some(indexed), mesh, report, maps });
@@ -45,7 +43,7 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
     drop(indexed);
     let mut stage = Stage { mesh, report, maps, names };
     if is_solid {
-        solidify(&mut stage, &cut, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
+        solidify(&mut stage, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
     } else if let Some(fewer_than) = debris {
         stage.drop_debris(fewer_than);
     }
@@ -69,7 +67,7 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
         {
             let (report, maps) = pool.account(indexed.positions());
             let names = names(&mut pool);
-            return Ok(Built { indexed, mesh, carried, report, maps, names, cut: Vec::new(), tolerance });
+            return Ok(Built { indexed, mesh, carried, report, maps, names, tolerance });
         }
         pool.take_back(indexed);
     }
@@ -92,6 +90,6 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
     let mut carried = carry::carry(&pool, |v| maps.vertices.new_of(v));
     let indexed = pool.lend(std::mem::take(&mut carried.attributes));
     let mesh = Mesh::build(&indexed).map_err(CleanError::Bug)?;
-    let (names, cut) = (names(&mut pool), std::mem::take(&mut pool.cut));
-    Ok(Built { indexed, mesh, carried, report: pool.report, maps, names, cut, tolerance })
+    let names = names(&mut pool);
+    Ok(Built { indexed, mesh, carried, report: pool.report, maps, names, tolerance })
 }

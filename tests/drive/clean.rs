@@ -151,7 +151,7 @@ fn solid(soup: &PolygonSoup, weld: Weld) {
     let open = mesh.components().iter().filter(|part| part.iter().any(|&f| on_boundary(mesh, f))).count();
     let named = [Kind::OpenPart, Kind::OpenSheet, Kind::NotOrientable].map(|k| cleaned.report.count(k));
     assert_eq!(named.iter().sum::<usize>(), open);
-    assert_eq!(mesh.vertices().filter(|&v| mesh.is_isolated(v)).count(), 0);
+    assert_eq!(mesh.vertices().filter(|&v| mesh.valence(v) == 0).count(), 0);
 
     let again = clean(&pool.clone().into(), options(Weld::None)).expect("never refused");
     assert_eq!(again.value.to_indexed(), pool, "a second pass changes something: {:?}", again.report.records);
