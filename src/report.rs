@@ -31,6 +31,8 @@ pub enum Element {
     Corner([u32; 2]),
     /// Two faces by their indices, the lower first.
     Faces([u32; 2]),
+    /// A vertex that lies on an edge: the vertex, then the two vertices that the edge joins, the lower index first.
+    VertexOnEdge([u32; 3]),
 }
 
 impl fmt::Display for Element {
@@ -40,6 +42,7 @@ impl fmt::Display for Element {
             Self::Face(face) => write!(f, "face {face}"),
             Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
             Self::Corner([face, corner]) => write!(f, "corner {corner} of face {face}"),
+            Self::VertexOnEdge([v, a, b]) => write!(f, "vertex {v} on edge {a}-{b}"),
             Self::Faces([a, b]) => write!(f, "faces {a} and {b}"),
         }
     }
@@ -284,7 +287,7 @@ impl Record {
 pub struct StepSummary {
     /// The step.
     pub step: Step,
-    /// How many elements it changed. An exact weld counts its merges here and keeps no record of them: it moves
+    /// How many elements it changed; or found, if it only looks. An exact weld counts its merges here and keeps no record of them: it moves
     /// nothing, and [`Maps`] names every one.
     pub changed: usize,
     /// The tolerance it used, in the mesh's units, if it has one.

@@ -75,7 +75,7 @@ pub(super) fn name_open(mesh: &Mesh) -> Result<Outcome<usize>, CleanError> {
     };
     let records: Vec<Record> = parts.open().map(record).collect();
     let mut outcome = unchanged(mesh, records.len(), step);
-    outcome.report.steps = vec![StepSummary::new(step, 0)];
+    outcome.report.steps = vec![StepSummary::new(step, outcome.value)];
     outcome.report.records = records;
     Ok(outcome)
 }

@@ -2,8 +2,9 @@
 
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
-use super::weld::{propose_tolerance, weld};
-use super::{CleanError, Weld};
+use super::tolerance::{ProposedTolerance, propose};
+use super::weld::weld;
+use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
 use crate::geometry::distance;
 use crate::matching::NONE;
@@ -18,8 +19,10 @@ pub(super) struct Pool<'s> {
     pub(super) polygons: Polygons,
     /// For each face the soup's face it was made of.
     pub(super) face_source: Vec<u32>,
-    /// For each corner the soup's corner it was.
+    /// For each corner the soup's corner it was; from the number of the soup's corners on, one of `blends`.
     pub(super) corner_source: Vec<u32>,
+    /// Corners that were put into edges.
+    pub(super) blends: Vec<Blend>,
     /// For each vertex the lowest of the soup's vertices in it: ascending.
     pub(super) vertex_source: Vec<u32>,
     /// For each of the soup's vertices the vertex it is in, or [`NONE`] if it was dropped.
@@ -35,8 +38,23 @@ pub(super) struct Pool<'s> {
     pub(super) report: Report,
     /// The tolerance of the weld; `None` if there was none.
     pub(super) tolerance: Option<f64>,
+    /// The soup's vertices that stood where they stand in the soup until they were stitched: ascending.
+    pub(super) stitched: Vec<u32>,
+    /// What was proposed, if the tolerance was.
+    pub(super) proposed: Option<ProposedTolerance>,
     /// Faces that were dropped or changed because they named a vertex twice.
     pub(super) degenerate_faces: usize,
+}
+
+/// A corner that was put into an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blend {
+    /// The soup's vertex that it names.
+    pub(super) vertex: u32,
+    /// The sources of the corners at the ends of the edge.
+    pub(super) ends: [u32; 2],
+    /// How far it is from the first to the second.
+    pub(super) at: f64,
 }
 
 /// Why a face of the soup does not enter the pool.
@@ -67,10 +85,36 @@ impl<'s> Pool<'s> {
         let tolerance = match how {
             Weld::None => None,
             Weld::Exact => Some(0.0),
-            Weld::Auto => Some(propose_tolerance(soup)),
+            Weld::Auto => {
+                let exact = Self::new(soup, Weld::Exact, &mut control.part(0.0, 0.5))?;
+                control.report("propose a tolerance", 0.2)?;
+                let (proposed, merged) = propose(&exact, &mut control.part(0.2, 0.3))?;
+                return match merged {
+                    None => Ok(Self { proposed: Some(proposed), ..exact }),
+                    Some(merged) => {
+                        let named = |v: u32| {
+                            if v == NONE { v } else { exact.vertex_source[merged[v as usize] as usize] }
+                        };
+                        let merged_into = exact.vertex_of.iter().map(|&v| named(v)).collect();
+                        drop(exact);
+                        let pool = Self::welded(soup, merged_into, Some(proposed.tolerance), control)?;
+                        Ok(Self { proposed: Some(proposed), ..pool })
+                    }
+                };
+            }
             Weld::Within(t) => Some(t),
         };
         let merged_into = weld(&soup.positions, tolerance, control)?;
+        Self::welded(soup, merged_into, tolerance, control)
+    }
+
+    /// The pool of a soup of which each vertex is merged into the given one.
+    fn welded(
+        soup: &'s PolygonSoup,
+        merged_into: Vec<u32>,
+        tolerance: Option<f64>,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
         let mut pool = Self {
             soup,
             positions: Vec::new(),
@@ -83,8 +127,11 @@ impl<'s> Pool<'s> {
             parted: Vec::new(),
             cut: Vec::new(),
             middles: Vec::new(),
+            blends: Vec::new(),
+            stitched: Vec::new(),
             report: Report::default(),
             tolerance,
+            proposed: None,
             degenerate_faces: 0,
         };
         let dropped = pool.number_vertices();
@@ -189,7 +236,8 @@ impl<'s> Pool<'s> {
 
     /// The soup's vertex that a corner of the pool named there.
     pub(super) fn named_at(&self, corner: usize) -> u32 {
-        self.soup.polygons.corners()[self.corner_source[corner] as usize]
+        let (source, corners) = (self.corner_source[corner] as usize, self.soup.polygons.corners());
+        corners.get(source).copied().unwrap_or_else(|| self.blends[source - corners.len()].vertex)
     }
 
     /// Removes faces.
@@ -214,27 +262,43 @@ impl<'s> Pool<'s> {
         Relation::from_pairs(self.soup.polygons.len(), self.face_source.len(), pairs)
     }
 
-    /// Records the merges that moved a corner, in front of all records of later steps. `settled` gives the soup's
-    /// vertices and the positions they ended at.
+    /// Records the merges that moved a corner, in front of all records of later steps. `ended` gives the positions at
+    /// which the soup's vertices ended.
     pub(super) fn record_merges(&mut self, ended: impl Fn(u32) -> Option<DVec3>) {
-        if !self.tolerance.is_some_and(|t| t > 0.0) {
+        if !self.tolerance.is_some_and(|t| t > 0.0) && self.stitched.is_empty() {
             return;
         }
         let soup = self.soup;
         let vertices = soup.positions.iter().zip(0u32..).filter(|(p, _)| p.is_finite());
         let mut farthest = 0.0f64;
-        let mut merges = Vec::new();
+        let [mut welded, mut stitched] = [Vec::new(), Vec::new()];
         for (&p, v) in vertices {
-            if let Some(q) = ended(v).filter(|&q| q != p) {
+            let Some(q) = ended(v).filter(|&q| q != p) else { continue };
+            let record = |step| Record::new(step, Kind::MergedVertex, Element::Vertex(v), Some(p));
+            if self.stitched.binary_search(&v).is_ok() {
+                stitched.push(record(Step::Stitch));
+            } else {
                 farthest = farthest.max(distance(p, q));
-                merges.push(Record::new(Step::Weld, Kind::MergedVertex, Element::Vertex(v), Some(p)));
+                welded.push(record(Step::Weld));
             }
         }
-        let before = self.report.records.partition_point(|r| r.step < Step::Weld);
-        self.report.records.splice(before..before, merges);
+        for (step, merges) in [(Step::Weld, welded), (Step::Stitch, stitched)] {
+            let before = self.report.records.partition_point(|r| r.step < step);
+            self.report.records.splice(before..before, merges);
+        }
         for step in self.report.steps.iter_mut().filter(|s| s.step == Step::Weld) {
             step.moved = farthest;
         }
+    }
+
+    /// How far a stitch may move anything: the tolerance of the weld, or how far apart naked edges that belong together
+    /// were found to lie, and at least the noise of single precision at the largest coordinate. `None` if no weld was
+    /// asked for: then vertices at one place are meant to be apart.
+    pub(super) fn reach(&self) -> Option<f64> {
+        let tolerance = self.tolerance?;
+        let largest = self.positions.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
+        let noise = largest * 4.0 / f64::from(1 << 24);
+        Some(self.proposed.map_or(tolerance, |p| p.reach.max(tolerance)).max(noise))
     }
 
     /// The soup's attributes on the vertices as they were welded.
@@ -254,6 +318,15 @@ impl<'s> Pool<'s> {
     /// Takes positions and faces back.
     pub(super) fn take_back(&mut self, indexed: IndexedMesh) {
         (self.positions, self.polygons, _) = indexed.into_parts();
+    }
+
+    /// Where its elements come from, moved out but for faces, which the maps need.
+    pub(super) fn sources(&mut self) -> Sources {
+        Sources {
+            corners: std::mem::take(&mut self.corner_source),
+            faces: self.face_source.clone(),
+            middles: std::mem::take(&mut self.middles),
+        }
     }
 
     /// The account of a pool whose vertices stand as they were welded, at these positions.

@@ -3,6 +3,7 @@
 use super::drop::{drop_debris, drop_isolated};
 use super::fill::fill_holes_of;
 use super::fins::drop_fins;
+use super::intersections::find_intersections;
 use super::open::{hopeless, name_open};
 use super::outward::turn_outward;
 use super::slivers::resolve_slivers;
@@ -10,7 +11,7 @@ use super::step::Parts;
 use super::{CleanError, Control};
 use crate::matching::NONE;
 use crate::report::{Element, Maps, Outcome, Record, Relation, Report};
-use crate::{Cancelled, FillHolesOptions, Mesh, SliverError, SliverOptions};
+use crate::{Cancelled, FillHolesOptions, Mesh, SelfIntersectionOptions, SliverError, SliverOptions};
 use std::collections::BTreeMap;
 
 /// By what element of the soup a record names one of the mesh.
@@ -33,6 +34,9 @@ pub(super) struct Stage {
 /// How often the steps that change faces are run.
 const MOST_ROUNDS: i32 = 8;
 
+/// How many pairs of faces that pass through each other are listed.
+const MOST_LISTED: usize = 10_000;
+
 /// Runs the steps that make a solid.
 pub(super) fn solidify(
     stage: &mut Stage,
@@ -49,9 +53,12 @@ pub(super) fn solidify(
         }
     }
     control.report("turn outward", 0.8)?;
-    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.95))?;
+    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.85))?;
     stage.join(turned);
-    control.report("find open parts", 0.95)?;
+    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, control: control.part(0.85, 0.97) };
+    let found = find_intersections(&stage.mesh, options)?;
+    stage.join(found);
+    control.report("find open parts", 0.97)?;
     let open = name_open(&stage.mesh)?;
     stage.join(open);
     stage.report.records.sort_by_key(|r| r.step);
@@ -173,6 +180,10 @@ impl Names {
                 [Element::Face(f), _] | [_, Element::Face(f)] => Element::Face(f),
                 [other, _] => other,
             },
+            Element::VertexOnEdge([v, a, b]) => {
+                let [a, b] = [a, b].map(vertex);
+                Element::VertexOnEdge([vertex(v), a.min(b), a.max(b)])
+            }
         }
     }
 

@@ -85,6 +85,7 @@ pub(crate) fn honest(soup: &PolygonSoup, result: &Result) -> Faults {
             Element::Face(f) | Element::Corner([f, _]) => (f as usize) < soup.polygons.len(),
             Element::Edge(ends) => ends.iter().all(|&v| (v as usize) < soup.positions.len()),
             Element::Faces(pair) => pair.iter().all(|&f| (f as usize) < soup.polygons.len()),
+            Element::VertexOnEdge(all) => all.iter().all(|&v| (v as usize) < soup.positions.len()),
         };
         check!(faults, exists, "{record:?} is not of the input");
     }

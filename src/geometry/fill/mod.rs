@@ -87,7 +87,7 @@ impl Mesh {
     /// Fills all holes: along each boundary loop the triangles of least area, or for long loops of little.
     ///
     /// - Of all triangulations of a loop without new vertices the one is taken that has the fewest triangles without area,
-    ///   and among those the least area plus a millionth of the squared sides, which decides where the hole is flat. (Barequet
+    ///   and among those the least area plus 1e-10 of the squared sides, which decides where the hole is flat. (Barequet
     ///   and Sharir, 1995; Liepa, "Filling holes in meshes", 2003, whose weight by the worst angle cannot be minimised
     ///   exactly by this method.) Above [`exact_edges`](FillHolesOptions::exact_edges) edges ears are cut, the shortest
     ///   diagonal first, seen along the loop's area vector. Whether the filler passes through other faces is not asked.
@@ -102,7 +102,7 @@ impl Mesh {
     ///   coordinates, and user data is the default: what should be there cannot be known.
     /// - Checkpoints, columns and the record of changes see all of it: a hole is filled with one face, which is then split.
     ///
-    /// O(mesh) and what each loop takes: O(n^3) up to `exact_edges` (0.1 s for 500), O(n log n) on longer loops from life.
+    /// O(mesh) and what each loop takes: O(n^3) up to `exact_edges` (0.2 s for 500), O(n log n) on longer loops from life.
     ///
     /// # Errors
     /// [`FillHolesError`]; nothing has changed then. A hole that stays open is no error but in the account.
