@@ -327,6 +327,17 @@ impl Report {
         self.records.is_empty()
     }
 
+    /// Adds what a step did to what the same step did before.
+    pub(crate) fn add_step(&mut self, step: StepSummary) {
+        match self.steps.iter_mut().find(|s| s.step == step.step) {
+            Some(all) => {
+                all.changed += step.changed;
+                all.moved = all.moved.max(step.moved);
+            }
+            None => self.steps.push(step),
+        }
+    }
+
     /// The number of records of one kind. Linear in the records.
     pub fn count(&self, kind: Kind) -> usize {
         self.records.iter().filter(|r| r.kind == kind).count()
