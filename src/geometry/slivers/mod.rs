@@ -308,6 +308,10 @@ impl Mesh {
         let mut run = Run::new(self.clone(), tolerance, found);
         run.resolve(&mut control)?;
         let (mesh, account) = run.finish();
+        if account.resolved.is_empty() {
+            // What was split to make way made none.
+            return Ok(SliverAccount { splits: 0, ..account });
+        }
         *self = mesh;
         Ok(account)
     }
