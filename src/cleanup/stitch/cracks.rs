@@ -57,10 +57,10 @@ fn candidates(classes: &Classes<'_, '_>) -> Vec<Candidate> {
             if looks < LOOKS { seams.reach } else { -1.0 }
         });
         own.sort_unstable_by(Candidate::order);
-        all.extend(own.iter().take(PARTNERS));
+        // Its partner thinks of it too.
+        all.extend(own.iter().take(PARTNERS).filter(|c| c.edges[0] == e));
     }
     all.sort_unstable_by(Candidate::order);
-    all.dedup_by_key(|c| c.edges);
     all
 }
 

@@ -12,8 +12,10 @@ use glam::DVec3;
 /// No more of what lies around an end is looked at, and no more ends are thought of as one with it.
 const LOOKS: usize = 32;
 const PARTNERS: usize = 6;
+/// No end is put into more edges.
+const EDGES: u32 = 4;
 /// What is tentative settles in two or three rounds on any file from life.
-const ROUNDS: usize = 16;
+const ROUNDS: usize = 8;
 
 /// An end to be put into a naked edge.
 #[derive(Clone, Copy, Debug)]
@@ -205,6 +207,8 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
     // For each vertex of the pool the last face that had its class as a corner.
     let mut in_face = vec![NONE; seams.polygons.corners().iter().max().map_or(0, |&v| v as usize + 1)];
     let mut last_face = NONE;
+    // For each class how many edges it is put into.
+    let mut edges_cut = vec![0; seams.vertex.len()];
     let mut hits: Vec<(f64, u32)> = Vec::new();
     for &e in loose {
         let edge = seams.edges[e as usize];
@@ -236,12 +240,14 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
         for &(at, class) in &hits {
             let vertex = classes.key(seams.vertex[class as usize]) as usize;
             if in_face[vertex] == edge.face
+                || edges_cut[class as usize] == EDGES
                 || apex.is_some_and(|(apex, _)| classes.is_joined(class, apex))
                 || fan.as_mut().is_some_and(|fan| !fan.reach(classes.place(class)))
             {
                 continue;
             }
             in_face[vertex] = edge.face;
+            edges_cut[class as usize] += 1;
             cuts.push(Cut { edge: e, at, end: classes.kept(class) });
         }
     }
