@@ -4,7 +4,7 @@ use crate::arena::Arena;
 use crate::indexed::list;
 use crate::matching::{Chains, NONE, Pairing};
 use crate::topology::Topology;
-use crate::{IndexedMesh, Mesh, Polygons};
+use crate::{Cancelled, Control, IndexedMesh, Mesh, Polygons};
 use glam::DVec3;
 use std::fmt;
 
@@ -15,6 +15,18 @@ use std::fmt;
 pub struct BuildError {
     /// What is wrong and where; never empty.
     pub defects: Vec<BuildDefect>,
+}
+
+/// Why a mesh was not built under a hook.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildWithError {
+    /// The faces do not form an oriented manifold.
+    #[error(transparent)]
+    Refused(#[from] BuildError),
+    /// The hook said stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl fmt::Display for BuildError {
@@ -84,14 +96,25 @@ impl Mesh {
     /// # Ok::<(), meshwright::IndexedError>(())
     /// ```
     pub fn build(pool: &IndexedMesh) -> Result<Self, BuildError> {
-        let chains = Chains::new(pool.vertex_count(), pool.polygons());
-        if chains.is_paired()
-            && let Some(mesh) = assemble(pool, &chains.into_pairing())
-        {
-            return Ok(mesh);
-        }
-        // Only a refusal needs the edges again.
-        Err(BuildError { defects: defects(&pool.topology()) })
+        build_by(pool, |_, _| Ok(()))
+    }
+
+    /// As [`build`](Self::build), with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`BuildWithError`]: as [`build`](Self::build); when cancelled.
+    ///
+    /// # Examples
+    /// ```
+    /// use meshwright::{BuildWithError, Control, IndexedMesh, Mesh, Progress, glam::DVec3};
+    /// use std::ops::ControlFlow;
+    /// let pool = IndexedMesh::from_triangles(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+    /// let mut stop = |p: Progress| if p.fraction > 0.3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    /// assert!(matches!(Mesh::build_with(&pool, Control::new(&mut stop)), Err(BuildWithError::Cancelled(_))));
+    /// # Ok::<(), meshwright::IndexedError>(())
+    /// ```
+    pub fn build_with(pool: &IndexedMesh, mut control: Control<'_>) -> Result<Self, BuildWithError> {
+        build_by(pool, |stage, fraction| Ok(control.report(stage, fraction)?))
     }
 
     /// The vertex pool of the mesh, in the order of the input for what survived, with each face's first corner kept.
@@ -110,6 +133,26 @@ impl Mesh {
         let positions = order.iter().map(|&v| self.positions[v as usize]).collect();
         IndexedMesh::trusted(positions, polygons, None).carrying(self.ordered_attributes(&order))
     }
+}
+
+fn build_by<E: From<BuildError>>(
+    pool: &IndexedMesh,
+    mut report: impl FnMut(&'static str, f64) -> Result<(), E>,
+) -> Result<Mesh, E> {
+    report("match edges", 0.0)?;
+    let chains = Chains::new(pool.vertex_count(), pool.polygons());
+    report("link", 0.4)?;
+    if chains.is_paired()
+        && let Some(mesh) = lay_out(pool, &chains.into_pairing())
+    {
+        report("walk fans", 0.7)?;
+        if each_vertex_has_one_fan(&mesh) {
+            return Ok(mesh);
+        }
+    }
+    report("find defects", 0.8)?;
+    // Only a refusal needs the edges again.
+    Err(BuildError { defects: defects(&pool.topology()) }.into())
 }
 
 impl TryFrom<&IndexedMesh> for Mesh {

@@ -52,7 +52,7 @@ mod walk;
 pub mod walking {}
 
 pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
-pub use build::{BuildDefect, BuildError};
+pub use build::{BuildDefect, BuildError, BuildWithError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
 pub use control::{Cancelled, Control, Progress};
@@ -86,16 +86,18 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use query::{
-    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, OutwardError,
-    OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, Side, SolidIndex, TurnedOutward,
-    orient_outward,
+    ClosestOptions, ClosestPoint, Contact, Crossing, FacePair, Feature, MassProperties, MeshIndex, Nearest,
+    OutwardError, OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, SelfIntersectionOptions,
+    SelfIntersections, Side, SolidIndex, TurnedOutward, orient_outward,
 };
 pub use report::{
     Attribute, Element, Extent, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation,
     Report, Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
-pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use topology::{
+    EdgeRef, NakedEdges, NotOrientable, Topology, UnifyWithError, unify_winding, unify_winding_with,
+};
 pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 

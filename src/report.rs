@@ -111,14 +111,28 @@ named! {
         TJunction = "t_junction",
         /// A sheet that hung on a surface at edges with three or more faces; its faces were dropped.
         Fin = "fin",
-        /// A face without area; resolved by flips and collapses, so that no hole opens.
-        ZeroAreaFace = "zero_area_face",
+        /// A face with an edge that has no length; collapsed.
+        Needle = "needle",
+        /// A triangle with a corner on the opposite edge; merged into its neighbour, so that no hole opens.
+        Cap = "cap",
+        /// A larger face without height, or that would be cut into triangles of which one has none; cut and resolved.
+        FlatFace = "flat_face",
+        /// A face with height that went with slivers beside it; its neighbours cover its place.
+        AbsorbedFace = "absorbed_face",
+        /// A face without height that could not be resolved; left.
+        LeftSliver = "left_sliver",
         /// A part with fewer faces than the caller asked for; its faces were dropped.
         Debris = "debris",
         /// A hole that was filled.
         FilledHole = "filled_hole",
-        /// A hole that could not be filled; left.
-        UnfilledHole = "unfilled_hole",
+        /// A hole with islands, or several loops around one hole; left.
+        HoleWithIslands = "hole_with_islands",
+        /// A hole whose every filler would double an edge; left.
+        HemmedInHole = "hemmed_in_hole",
+        /// A hole that is the outside of one face, or whose filler would have about the size of its part; left.
+        OutsideOfSheet = "outside_of_sheet",
+        /// A hole of more edges than were asked for; left.
+        LongHole = "long_hole",
         /// A vertex without a face; dropped.
         IsolatedVertex = "isolated_vertex",
         /// A shell that was turned: outward, or inward around a cavity.
@@ -273,12 +287,13 @@ impl Record {
 pub struct StepSummary {
     /// The step.
     pub step: Step,
-    /// How many elements it changed. An exact weld counts its merges here and keeps no record of them: it moves
+    /// How many elements it changed; or found, if it only looks. An exact weld counts its merges here and keeps no record of them: it moves
     /// nothing, and [`Maps`] names every one.
     pub changed: usize,
     /// The tolerance it used, in the mesh's units, if it has one.
     pub tolerance: Option<f64>,
-    /// How far it moved the surface, at most, in the mesh's units; what it dropped or made new is told by records.
+    /// How far it moved the surface, in the mesh's units: the farthest that one operation did. What was dropped or made new
+    /// is told by records.
     #[cfg_attr(feature = "serde", serde(default))]
     pub moved: f64,
 }

@@ -216,7 +216,7 @@ pub(crate) struct Smooth {
     /// How often
     #[arg(long, value_name = "N")]
     pub(crate) iterations: u32,
-    /// How far a step goes, above 0 and at most 1
+    /// How far a step goes, above 0 and at most 1; at most 10000 for `implicit`
     #[arg(long, value_name = "L", allow_hyphen_values = true)]
     pub(crate) lambda: f64,
     /// The second step of `taubin`, below -L [default: for a pass band of 0.1]
@@ -239,6 +239,8 @@ pub(crate) enum SmoothMethod {
     Taubin,
     /// The mean of its neighbours, weighted by cotangents
     Cotan,
+    /// The same in one backward step of any length up to 10000
+    Implicit,
 }
 
 /// What boundary vertices do.

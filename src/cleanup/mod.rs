@@ -3,13 +3,16 @@
 //! [`clean`] runs the whole pipeline; [`index`] runs the part of it that makes a valid vertex pool, and [`inspect`]
 //! tells what state a soup is in without changing it. How faces meet is decided on the indexed form, before half-edges
 //! exist; what makes a solid of a mesh are steps on the mesh, each of which can be called on its own:
-//! [`drop_fins`], [`drop_debris`], [`drop_isolated`], [`turn_outward`].
+//! [`drop_fins`], [`resolve_slivers`], [`drop_debris`], [`fill_holes`], [`drop_isolated`], [`turn_outward`],
+//! [`find_intersections`].
 
 mod account;
 mod carry;
 mod drop;
 mod facts;
+mod fill;
 mod fins;
+mod intersections;
 mod manifold;
 mod near;
 mod open;
@@ -18,6 +21,7 @@ mod pair;
 mod pipeline;
 mod polygons;
 mod pool;
+mod slivers;
 mod solid;
 mod split;
 mod step;
@@ -27,9 +31,12 @@ mod weld;
 
 pub use account::{Account, FaceTally, LostSummary, SCHEMA};
 pub use drop::{drop_debris, drop_isolated};
-pub use facts::{Facts, inspect};
+pub use facts::{Facts, inspect, inspect_with};
+pub use fill::fill_holes;
 pub use fins::drop_fins;
+pub use intersections::find_intersections;
 pub use outward::turn_outward;
+pub use slivers::resolve_slivers;
 pub use stitch::stitch;
 pub use tolerance::{ProposedTolerance, propose_tolerance, propose_tolerance_with_reasons};
 
@@ -169,9 +176,28 @@ pub fn clean_indexed(
     soup: &PolygonSoup,
     options: CleanOptions<'_>,
 ) -> Result<Outcome<IndexedMesh>, CleanError> {
-    let pipeline::Cleaned { indexed, mesh, report, maps } = pipeline::run(soup, options)?;
+    let pipeline::Cleaned { indexed, mesh, report, maps, .. } = pipeline::run(soup, options)?;
     let value = indexed.unwrap_or_else(|| mesh.to_indexed());
     Ok(Outcome { value, report, maps })
+}
+
+/// Where the elements of the result were in the soup.
+pub(crate) struct Sources {
+    /// For each corner the soup's.
+    pub(crate) corners: Vec<u32>,
+    /// For each face the soup's.
+    pub(crate) faces: Vec<u32>,
+    /// The corners in the middle of a parted edge, which were none of the soup's; ascending.
+    pub(crate) middles: Vec<u32>,
+}
+
+/// As [`clean`] with [`Profile::Preserve`], but tells of corners too.
+pub(crate) fn clean_tracked(
+    soup: &PolygonSoup,
+    options: CleanOptions<'_>,
+) -> Result<(Outcome<Mesh>, Sources), CleanError> {
+    let pipeline::Cleaned { mesh, report, maps, sources, .. } = pipeline::run(soup, options)?;
+    Ok((Outcome { value: mesh, report, maps }, sources))
 }
 
 /// Makes a valid vertex pool of any soup: drops what is not finite, out of range or short, welds, and repairs faces
@@ -190,7 +216,32 @@ pub fn clean_indexed(
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn index(soup: &PolygonSoup, weld: Weld) -> Result<Outcome<IndexedMesh>, CleanError> {
-    Ok(outcome(Pool::new(soup, weld, &mut Control::none())?))
+    index_with(soup, weld, Control::none())
+}
+
+/// As [`index`], with a progress-and-cancel hook.
+///
+/// # Errors
+/// As [`index`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, PolygonSoup, Progress, cleanup::{CleanError, Weld, index_with}};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let refused = index_with(&PolygonSoup::default(), Weld::Exact, Control::new(&mut stop));
+/// assert!(matches!(refused, Err(CleanError::Cancelled(_))));
+/// ```
+pub fn index_with(
+    soup: &PolygonSoup,
+    weld: Weld,
+    mut control: Control<'_>,
+) -> Result<Outcome<IndexedMesh>, CleanError> {
+    control.report("weld", 0.0)?;
+    // The pool is the first two fifths of a clean-up, and nearly all there is to this.
+    let pool = Pool::new(soup, weld, &mut control.part(0.0, 2.0))?;
+    control.report("carry attributes", 0.8)?;
+    Ok(outcome(pool))
 }
 
 /// A pool as it stands, with its account.

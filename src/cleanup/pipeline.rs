@@ -5,7 +5,7 @@ use super::manifold::{drop_duplicates, make_manifold};
 use super::pool::Pool;
 use super::solid::{Names, Stage, solidify};
 use super::stitch::stitch_pool;
-use super::{CleanError, CleanOptions, Profile, split};
+use super::{CleanError, CleanOptions, Profile, Sources, split};
 use crate::build::assemble;
 use crate::matching::{Chains, Matching};
 use crate::report::{Maps, Report, Step, StepSummary};
@@ -18,6 +18,8 @@ pub(super) struct Cleaned {
     pub(super) mesh: Mesh,
     pub(super) report: Report,
     pub(super) maps: Maps,
+    /// Of what is there before half-edges are.
+    pub(super) sources: Sources,
 }
 
 /// What becomes of a soup before half-edges exist.
@@ -28,9 +30,8 @@ struct Built {
     report: Report,
     maps: Maps,
     names: Names,
-    /// Faces at edges that were cut.
-    cut: Vec<u32>,
     tolerance: Option<f64>,
+    sources: Sources,
 }
 
 pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Cleaned, CleanError> {
@@ -38,26 +39,25 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
     let is_solid = profile == Profile::Solid;
     let pool = Pool::new(soup, weld, &mut control.part(0.0, if is_solid { 0.6 } else { 1.0 }))?;
     let built = build(pool, profile, &mut control.part(0.0, if is_solid { 0.6 } else { 1.0 }))?;
-    let Built { indexed, mesh, carried, report, maps, names, cut, tolerance } = built;
+    let Built { indexed, mesh, carried, report, maps, names, tolerance, sources } = built;
     let report = Report { not_carried: carried.not_carried(), lost_values: carried.lost_values(), ..report };
     if !is_solid && debris.is_none() {
-        return Ok(Cleaned { indexed: Some(indexed), mesh, report, maps });
+        return Ok(Cleaned { indexed: Some(indexed), mesh, report, maps, sources });
     }
     drop(indexed);
     let mut stage = Stage { mesh, report, maps, names };
     if is_solid {
-        solidify(&mut stage, &cut, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
+        solidify(&mut stage, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
     } else if let Some(fewer_than) = debris {
         stage.drop_debris(fewer_than);
     }
-    Ok(Cleaned { indexed: None, mesh: stage.mesh, report: stage.report, maps: stage.maps })
+    Ok(Cleaned { indexed: None, mesh: stage.mesh, report: stage.report, maps: stage.maps, sources })
 }
 
 fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Result<Built, CleanError> {
     let tolerance = pool.tolerance;
-    let names = |pool: &mut Pool<'_>| Names {
-        vertex: std::mem::take(&mut pool.vertex_source),
-        face: std::mem::take(&mut pool.face_source),
+    let names = |pool: &mut Pool<'_>| {
+        Names::new(std::mem::take(&mut pool.vertex_source), std::mem::take(&mut pool.face_source))
     };
     control.report("match edges", 0.4)?;
     let chains = Chains::new(pool.positions.len(), &pool.polygons);
@@ -69,9 +69,10 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
         if let Some(mesh) = assemble(&indexed, &chains.into_pairing())
             && (profile == Profile::Preserve || mesh.is_closed())
         {
+            let sources = pool.sources();
             let (report, maps) = pool.account(indexed.positions());
             let names = names(&mut pool);
-            return Ok(Built { indexed, mesh, carried, report, maps, names, cut: Vec::new(), tolerance });
+            return Ok(Built { indexed, mesh, carried, report, maps, names, tolerance, sources });
         }
         pool.take_back(indexed);
     }
@@ -100,6 +101,7 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
     let mut carried = carry::carry(&pool, |v| maps.vertices.new_of(v));
     let indexed = pool.lend(std::mem::take(&mut carried.attributes));
     let mesh = Mesh::build(&indexed).map_err(CleanError::Bug)?;
-    let (names, cut) = (names(&mut pool), std::mem::take(&mut pool.cut));
-    Ok(Built { indexed, mesh, carried, report: pool.report, maps, names, cut, tolerance })
+    let sources = pool.sources();
+    let names = names(&mut pool);
+    Ok(Built { indexed, mesh, carried, report: pool.report, maps, names, tolerance, sources })
 }

@@ -4,7 +4,7 @@ use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
 use super::tolerance::{ProposedTolerance, propose};
 use super::weld::weld;
-use super::{CleanError, Weld};
+use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
 use crate::geometry::distance;
 use crate::matching::NONE;
@@ -31,7 +31,7 @@ pub(super) struct Pool<'s> {
     pub(super) flipped: Vec<bool>,
     /// The last vertices are in the middle between these: edges that were parted.
     pub(super) parted: Vec<[u32; 2]>,
-    /// Faces at edges that were cut because the surface cannot be oriented.
+    /// The ends of edges that were cut because the surface cannot be oriented.
     pub(super) cut: Vec<u32>,
     /// The corners at those vertices, ascending.
     pub(super) middles: Vec<u32>,
@@ -318,6 +318,15 @@ impl<'s> Pool<'s> {
     /// Takes positions and faces back.
     pub(super) fn take_back(&mut self, indexed: IndexedMesh) {
         (self.positions, self.polygons, _) = indexed.into_parts();
+    }
+
+    /// Where its elements come from, moved out but for faces, which the maps need.
+    pub(super) fn sources(&mut self) -> Sources {
+        Sources {
+            corners: std::mem::take(&mut self.corner_source),
+            faces: self.face_source.clone(),
+            middles: std::mem::take(&mut self.middles),
+        }
     }
 
     /// The account of a pool whose vertices stand as they were welded, at these positions.

@@ -104,6 +104,9 @@ impl Fans {
 
         let mut number_of_fan = vec![NONE; self.vertex.len()];
         let mut number_of_vertex = vec![NONE; pool.positions.len()];
+        // What was cut stays at one place; a merge that is taken back goes where it was.
+        let mut is_cut = vec![false; pool.positions.len()];
+        pool.cut.iter().for_each(|&v| is_cut[v as usize] = true);
         let mut positions = Vec::with_capacity(order.len());
         let mut sources = Vec::with_capacity(order.len());
         for (number, &(source, v, fan)) in order.iter().enumerate() {
@@ -111,7 +114,7 @@ impl Fans {
             if fan != NONE {
                 number_of_fan[fan as usize] = number;
             }
-            if fan == first_fan[v as usize] {
+            if fan == first_fan[v as usize] || is_cut[v as usize] {
                 number_of_vertex[v as usize] = number;
                 positions.push(pool.positions[v as usize]);
             } else {

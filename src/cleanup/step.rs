@@ -4,8 +4,9 @@ use crate::geometry::normals::double_area_vector;
 use crate::geometry::unit_scale;
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Outcome, Record, Relation, Report, Step, StepSummary};
-use crate::{Mesh, Numbering};
+use crate::{FaceKey, Mesh, Numbering};
 use glam::DVec3;
+use slotmap::Key;
 
 /// The numbers that elements have before a step, by which it names them.
 pub(super) struct Before {
@@ -22,6 +23,17 @@ impl Before {
         (0..).zip(mesh.vertices.in_user_order()).for_each(|(i, v)| vertex[v as usize] = i);
         (0..).zip(mesh.faces.in_user_order()).for_each(|(i, f)| face[f as usize] = i);
         Self { numbering: mesh.numbering(), vertex, face }
+    }
+
+    pub(super) fn numbering(&self) -> &Numbering {
+        &self.numbering
+    }
+
+    /// The element that a key named, if it did.
+    pub(super) fn face_of(&self, key: FaceKey) -> Option<Element> {
+        let slot = key.data().as_ffi() as u32;
+        let number = self.face.get(slot as usize).copied().filter(|&f| f != NONE)?;
+        (self.numbering.faces[number as usize] == key).then_some(Element::Face(number))
     }
 
     pub(super) fn vertex(&self, slot: u32) -> Element {

@@ -1,4 +1,4 @@
-//! Filling a hole with one face.
+//! Filling a hole with one face; the links of a hole filled with triangles.
 
 use crate::column::Kind;
 use crate::{FaceKey, HalfedgeKey, Mesh};
@@ -20,7 +20,8 @@ pub enum FillHoleError {
 
 impl Mesh {
     /// Fills the hole along a boundary loop with one face, whose first corner is where the half-edge starts. No vertex
-    /// or edge is made; [`triangulate_face`](Self::triangulate_face) or [`poke_face`](Self::poke_face) cut it up.
+    /// or edge is made; [`triangulate_face`](Self::triangulate_face) or [`poke_face`](Self::poke_face) cut it up, and
+    /// [`triangulate_hole`](Self::triangulate_hole) fills it with triangles of least area.
     ///
     /// ```text
     ///   ●───●───●        ●───●───●

@@ -1,9 +1,9 @@
 //! From bytes to a soup, through the whole ladder: the body of the property test, the fuzz target and the regressions.
 
 use arbitrary::{Arbitrary, Result, Unstructured};
-use meshwright::cleanup::{CleanOptions, Weld, clean, clean_indexed, index};
+use meshwright::cleanup::{Account, CleanOptions, Profile, Weld, clean, clean_indexed, index};
 use meshwright::glam::DVec3;
-use meshwright::{CornerData, Group, IndexedMesh, Kind, Mesh, PolygonSoup, Polygons};
+use meshwright::{CornerData, Element, FaceKey, Group, IndexedMesh, Kind, Mesh, PolygonSoup, Polygons};
 
 /// A soup small enough for every way of going wrong to come up. Prints as Rust, to be pasted as a regression.
 #[derive(Arbitrary, Clone, Debug)]
@@ -126,7 +126,39 @@ pub(crate) fn check(case: &Soup) {
     assert!(again.maps.vertices.is_identity() && again.maps.faces.is_identity());
 
     ladder(&soup);
+    solid(&soup, weld);
     attributes(soup, weld, &pool);
+}
+
+/// The profile `solid` gives a valid mesh too, and an account that holds; what it leaves open, it names.
+fn solid(soup: &PolygonSoup, weld: Weld) {
+    let options = |weld| CleanOptions { weld, ..CleanOptions::solid() };
+    let cleaned = clean(soup, options(weld)).expect("a soup is never refused");
+    let mesh = &cleaned.value;
+    assert_eq!(mesh.violations(), []);
+    let pool = mesh.to_indexed();
+    let account = Account::new(soup, (Profile::Solid, weld), &pool, &cleaned.report, &cleaned.maps);
+    let account = account.expect("a soup is never refused");
+    let tally = account.faces;
+    assert_eq!(tally.kept + tally.changed + tally.dropped, soup.polygons.len());
+    assert_eq!(account.solid, mesh.is_closed());
+    let records = &cleaned.report.records;
+    for f in 0..soup.polygons.len() {
+        let is_named = || records.iter().any(|r| r.element == Element::Face(f as u32));
+        assert!(!cleaned.maps.faces.new_of(f).is_empty() || is_named(), "face {f} vanished");
+    }
+    assert!(records.is_sorted_by_key(|r| r.step));
+    let open = mesh.components().iter().filter(|part| part.iter().any(|&f| on_boundary(mesh, f))).count();
+    let named = [Kind::OpenPart, Kind::OpenSheet, Kind::NotOrientable].map(|k| cleaned.report.count(k));
+    assert_eq!(named.iter().sum::<usize>(), open);
+    assert_eq!(mesh.vertices().filter(|&v| mesh.valence(v) == 0).count(), 0);
+
+    let again = clean(&pool.clone().into(), options(Weld::None)).expect("never refused");
+    assert_eq!(again.value.to_indexed(), pool, "a second pass changes something: {:?}", again.report.records);
+}
+
+fn on_boundary(mesh: &Mesh, f: FaceKey) -> bool {
+    mesh.face_halfedges(f).any(|h| mesh.is_boundary(mesh.twin(h)))
 }
 
 /// Attributes that say where they come from are found there after clean-up, and on the mesh's own corners.

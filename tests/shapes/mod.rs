@@ -252,6 +252,7 @@ pub(crate) fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn std::error::Er
 }
 
 /// Numbers that look random and are the same on every run (SplitMix64, Steele, Lea and Flood 2014).
+#[derive(Clone)]
 pub(crate) struct Noise(pub(crate) u64);
 
 impl Noise {

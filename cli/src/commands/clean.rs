@@ -22,9 +22,8 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         })
     })?;
     let Outcome { value, report, maps } = outcome;
-    let account = session.timed(Phase::Run, || {
-        progress::named("inspecting", || Account::new(&loaded.soup, (profile, weld), &value, &report, &maps))
-    })?;
+    let account =
+        session.timed(Phase::Run, || Account::new(&loaded.soup, (profile, weld), &value, &report, &maps))?;
     let soup: PolygonSoup = session.timed(Phase::Run, || value.into());
     // All files are complete before the first is put in its place.
     let (staged, lost) = output::stage_mesh(session, &args.output, &soup)?;

@@ -79,12 +79,13 @@ impl Ring {
         let (u, v) = (b - a, c - a);
         let double = u.cross(v).length();
         let (uu, vv, ww) = (u.length_squared(), v.length_squared(), (v - u).length_squared());
-        let longest = uu.max(vv).max(ww).sqrt();
-        Triangle {
-            area: 0.5 * double,
-            squares: uu + vv + ww,
-            is_flat: double <= longest * (FLAT * longest + self.blur),
-        }
+        let longest = uu.max(vv).max(ww);
+        // Most are far from flat, and need no second root to tell.
+        let is_flat = double * double <= 2.0 * longest * (FLAT * FLAT * longest + self.blur * self.blur) && {
+            let longest = longest.sqrt();
+            double <= longest * (FLAT * longest + self.blur)
+        };
+        Triangle { area: 0.5 * double, squares: uu + vv + ww, is_flat }
     }
 
     /// The area of a filler, scaled.

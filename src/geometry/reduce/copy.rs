@@ -1,6 +1,6 @@
 //! The private copy that is reduced: triangles alone, in an order in which neighbours lie together in memory.
 
-use super::features::Hold;
+use super::part::{Edge, Part, Spot};
 use super::quadric::{Planes, Quadric};
 use super::queue::PARKED;
 use crate::Mesh;
@@ -8,39 +8,6 @@ use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
 use crate::matching::NONE;
 use glam::DVec3;
-
-/// A vertex of the copy: three cache lines.
-#[derive(Clone, Copy, Default)]
-#[repr(align(64))]
-pub(super) struct Vertex {
-    pub(super) position: DVec3,
-    /// The planes of its faces and of its feature edges as they are now: what a collapse costs.
-    pub(super) fan: Planes,
-    /// The planes of all faces that ever went into it, about the position: the error that is told.
-    pub(super) memory: Quadric,
-    /// The vertex it went into, once it is dead.
-    pub(super) into: u32,
-    /// The number of edges.
-    pub(super) valence: u32,
-    pub(super) hold: Hold,
-    pub(super) is_open: bool,
-    pub(super) is_moved: bool,
-}
-
-/// An edge of the copy: two half-edges, `2 * edge` and its twin.
-#[derive(Clone, Copy)]
-#[repr(align(32))]
-pub(super) struct Edge {
-    /// By side. In a dead edge, the half-edge that took the place of this one in its face.
-    next: [u32; 2],
-    prev: [u32; 2],
-    origin: [u32; 2],
-    /// Where in the queue it is.
-    pub(super) bucket: u32,
-    is_open: [bool; 2],
-    pub(super) is_dead: bool,
-    pub(super) is_feature: bool,
-}
 
 /// To numbers about zero and about one, and back.
 #[derive(Clone, Copy)]
@@ -78,16 +45,19 @@ impl Frame {
 /// The copy. Half-edges and vertices have numbers of their own.
 pub(super) struct Copy {
     pub(super) frame: Frame,
-    pub(super) vertices: Vec<Vertex>,
+    pub(super) spots: Vec<Spot>,
+    fans: Vec<Planes>,
+    /// The planes of the faces around each vertex as they were.
+    pub(super) origins: Vec<Planes>,
+    memory: Vec<Quadric>,
     pub(super) edges: Vec<Edge>,
+    keys: Vec<u16>,
     /// The face of the mesh beside each half-edge, by edge and side.
     pub(super) faces: Vec<[u32; 2]>,
     /// The slot in the mesh of each vertex.
     pub(super) vertex_slot: Vec<u32>,
     /// The slot in the mesh of each edge.
     pub(super) edge_slot: Vec<u32>,
-    /// How many faces are gone.
-    pub(super) removed: usize,
 }
 
 impl Copy {
@@ -98,129 +68,79 @@ impl Copy {
         let vertex_slot = along_a_curve(used().map(|v| (frame.local(mesh.positions[v as usize]), v)));
         let mut number = vec![NONE; mesh.vertices.slot_count()];
         (0..).zip(&vertex_slot).for_each(|(i, &v)| number[v as usize] = i);
-        let vertex = |&v: &u32| Vertex {
-            position: frame.local(mesh.positions[v as usize]),
-            into: NONE,
-            is_open: mesh.face[mesh.vertex_halfedge[v as usize] as usize] == NONE,
-            ..Vertex::default()
-        };
-        let mut vertices: Vec<Vertex> = vertex_slot.iter().map(vertex).collect();
+        let spot = |&v: &u32| Spot::new(frame.local(mesh.positions[v as usize]));
+        let mut spots: Vec<Spot> = vertex_slot.iter().map(spot).collect();
 
         // Edges by their lower vertex.
         let ends = |e: u32| [2 * e, 2 * e + 1].map(|h| number[mesh.origin[h as usize] as usize]);
         let lower = |e: u32| ends(e)[0].min(ends(e)[1]) as usize;
-        let mut place = vec![0u32; vertices.len() + 1];
+        let mut place = vec![0u32; spots.len() + 1];
         mesh.edges.live().for_each(|e| place[lower(e) + 1] += 1);
         for i in 1..place.len() {
             place[i] += place[i - 1];
         }
         let mut edge_number = vec![NONE; mesh.edges.slot_count()];
+        let mut edge_slot = vec![NONE; mesh.edge_count()];
         for e in mesh.edges.live() {
             let place = &mut place[lower(e)];
             edge_number[e as usize] = *place;
+            edge_slot[*place as usize] = e;
             *place += 1;
         }
         let halfedge = |h: u32| 2 * edge_number[h as usize >> 1] + (h & 1);
-        let blank = Edge {
-            next: [NONE; 2],
-            prev: [NONE; 2],
-            origin: [NONE; 2],
-            bucket: PARKED,
-            is_open: [false; 2],
-            is_dead: false,
-            is_feature: false,
-        };
-        let mut edges = vec![blank; mesh.edge_count()];
-        let mut faces = vec![[NONE; 2]; edges.len()];
-        let mut edge_slot = vec![NONE; edges.len()];
-        for e in mesh.edges.live() {
-            let i = edge_number[e as usize] as usize;
+        let mut faces = Vec::with_capacity(edge_slot.len());
+        let mut edges = Vec::with_capacity(edge_slot.len());
+        let mut valence = vec![0u32; spots.len()];
+        for (i, &e) in (0..).zip(&edge_slot) {
             let sides = [2 * e as usize, 2 * e as usize + 1];
-            faces[i] = sides.map(|h| mesh.face[h]);
-            edge_slot[i] = e;
-            edges[i] = Edge {
-                next: sides.map(|h| halfedge(mesh.next[h])),
-                prev: sides.map(|h| halfedge(mesh.prev[h])),
-                origin: ends(e),
-                is_open: faces[i].map(|f| f == NONE),
-                ..blank
-            };
-            ends(e).into_iter().for_each(|v| vertices[v as usize].valence += 1);
+            let beside = sides.map(|h| mesh.face[h]);
+            let is_open = beside.map(|f| f == NONE);
+            let ends = ends(e);
+            faces.push(beside);
+            edges.push(Edge::new(sides.map(|h| halfedge(mesh.next[h])), ends, is_open));
+            for side in 0..2 {
+                valence[ends[side] as usize] += 1;
+                if is_open[side] {
+                    spots[ends[1 - side] as usize].link = 2 * i + side as u32;
+                }
+            }
         }
-        Self { frame, vertices, edges, faces, vertex_slot, edge_slot, removed: 0 }
+        spots.iter_mut().zip(valence).for_each(|(spot, n)| spot.set_valence(n));
+        let keys = vec![PARKED; edges.len()];
+        let (fans, origins, memory) = (Vec::new(), Vec::new(), Vec::new());
+        Self { frame, spots, fans, origins, memory, edges, keys, faces, vertex_slot, edge_slot }
     }
 
-    #[inline]
-    pub(super) fn vertex(&self, v: u32) -> &Vertex {
-        &self.vertices[v as usize]
-    }
-
-    #[inline]
-    fn edge(&self, h: u32) -> (&Edge, usize) {
-        (&self.edges[h as usize >> 1], (h & 1) as usize)
-    }
-
-    #[inline]
-    pub(super) fn next(&self, h: u32) -> u32 {
-        let (edge, side) = self.edge(h);
-        edge.next[side]
-    }
-
-    #[inline]
-    pub(super) fn prev(&self, h: u32) -> u32 {
-        let (edge, side) = self.edge(h);
-        edge.prev[side]
-    }
-
-    #[inline]
-    pub(super) fn origin(&self, h: u32) -> u32 {
-        let (edge, side) = self.edge(h);
-        edge.origin[side]
-    }
-
-    /// Whether the half-edge has no face.
-    #[inline]
-    pub(super) fn is_open(&self, h: u32) -> bool {
-        let (edge, side) = self.edge(h);
-        edge.is_open[side]
-    }
-
-    #[inline]
-    pub(super) fn set_origin(&mut self, h: u32, v: u32) {
-        self.edges[h as usize >> 1].origin[(h & 1) as usize] = v;
-    }
-
-    #[inline]
-    pub(super) fn link(&mut self, h: u32, n: u32) {
-        self.edges[h as usize >> 1].next[(h & 1) as usize] = n;
-        self.edges[n as usize >> 1].prev[(n & 1) as usize] = h;
-    }
-
-    /// Lets `stays` take the place of `goes` in its face, or on the boundary; the edge of `goes` dies.
-    pub(super) fn replace(&mut self, goes: u32, stays: u32) {
-        let (before, after) = (self.prev(goes), self.next(goes));
-        self.link(before, stays);
-        self.link(stays, after);
-        let [from, to] = [goes, stays].map(|h| (h as usize >> 1, (h & 1) as usize));
-        self.faces[to.0][to.1] = self.faces[from.0][from.1];
-        self.edges[to.0].is_open[to.1] = self.edges[from.0].is_open[from.1];
-        self.edges[to.0].is_feature |= self.edges[from.0].is_feature;
-        self.edges[from.0].next[from.1] = stays;
-        self.bury(goes >> 1);
-    }
-
-    pub(super) fn bury(&mut self, e: u32) {
-        let edge = &mut self.edges[e as usize];
-        (edge.is_dead, edge.bucket) = (true, PARKED);
-    }
-
-    /// The half-edge that stands for this one in its face, which must be live.
-    pub(super) fn successor(&self, h: u32) -> u32 {
-        let mut h = h;
-        while self.edges[h as usize >> 1].is_dead {
-            h = self.next(h);
+    /// Sums up the planes at every vertex; keeps them all along if the error has a bound.
+    pub(super) fn sum_planes(&mut self, line_weight: f64, has_bound: bool) {
+        let mut first = vec![NONE; self.spots.len()];
+        for (i, edge) in (0..).zip(&self.edges) {
+            let ends = edge.ends();
+            (first[ends[0] as usize], first[ends[1] as usize]) = (2 * i, 2 * i + 1);
         }
-        h
+        let whole = self.whole();
+        let fans = first.iter().map(|&h| whole.fan_around(h, line_weight)).collect();
+        let origins: Vec<Planes> = first.iter().map(|&h| whole.faces_around(h)).collect();
+        self.fans = fans;
+        if has_bound {
+            self.memory = origins.iter().map(|&planes| planes.into()).collect();
+        }
+        self.origins = origins;
+    }
+
+    /// All of it.
+    pub(super) fn whole(&mut self) -> Part<'_> {
+        Part {
+            spots: &mut self.spots,
+            fans: &mut self.fans,
+            memory: &mut self.memory,
+            edges: &mut self.edges,
+            keys: &mut self.keys,
+            faces: &mut self.faces,
+            first_vertex: 0,
+            first_edge: 0,
+            removed: 0,
+        }
     }
 }
 
@@ -263,11 +183,6 @@ fn along_a_curve(points: impl Iterator<Item = (DVec3, u32)> + Clone) -> Vec<u32>
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn records_fill_whole_cache_lines() {
-        assert_eq!((size_of::<Vertex>(), size_of::<Edge>()), (192, 32));
-    }
 
     #[test]
     fn a_frame_brings_any_points_to_about_one_and_back() {

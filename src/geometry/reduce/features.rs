@@ -2,6 +2,7 @@
 
 use super::ReduceOptions;
 use super::copy::Copy;
+use super::part::Part;
 use super::quadric::Planes;
 use crate::column::Kind;
 use crate::{FeatureOptions, Mesh};
@@ -23,8 +24,8 @@ impl Copy {
     /// Marks feature edges and holds the vertices at them.
     pub(super) fn mark(&mut self, mesh: &Mesh, options: &ReduceOptions<'_>) {
         let is_sharp = sharp_edges(mesh, options.sharp_angle);
-        let mut count = vec![0u8; self.vertices.len()];
-        let mut locked = vec![false; self.vertices.len()];
+        let mut count = vec![0u8; self.spots.len()];
+        let mut locked = vec![false; self.spots.len()];
         for i in 0..self.edges.len() {
             let e = self.edge_slot[i];
             let sides = [2 * e as usize, 2 * e as usize + 1];
@@ -36,42 +37,31 @@ impl Copy {
                 || is_sharp.get(e as usize).is_some_and(|&sharp| sharp)
                 || options.keep_seams && mesh.is_seam_of_any(e)
                 || options.keep_groups && mesh.is_group_border(left, right);
-            self.edges[i].is_feature = is_feature;
-            for side in 0..2 {
-                let v = self.origin(2 * i as u32 + side) as usize;
-                count[v] = count[v].saturating_add(u8::from(is_feature));
-                locked[v] |= is_locked;
+            if is_feature {
+                self.edges[i].set_feature();
+                for v in self.edges[i].ends().map(|v| v as usize) {
+                    count[v] = count[v].saturating_add(1);
+                    locked[v] |= is_locked;
+                }
             }
         }
-        for (i, vertex) in self.vertices.iter_mut().enumerate() {
+        for (i, spot) in self.spots.iter_mut().enumerate() {
             let is_locked = || {
                 options
                     .locked_vertices
                     .is_some_and(|is_locked| is_locked(mesh.vertices.key(self.vertex_slot[i])))
             };
-            vertex.hold = match count[i] {
+            spot.set_hold(match count[i] {
                 _ if locked[i] || is_locked() => Hold::Fixed,
                 0 => Hold::Free,
                 2 => Hold::Line,
                 _ => Hold::Fixed,
-            };
+            });
         }
     }
+}
 
-    /// Sums up the planes at every vertex.
-    pub(super) fn sum_planes(&mut self, line_weight: f64) {
-        let mut first = vec![u32::MAX; self.vertices.len()];
-        for h in 0..2 * self.edges.len() as u32 {
-            first[self.origin(h) as usize] = h;
-        }
-        for (v, h) in first.into_iter().enumerate() {
-            let fan = self.fan_around(h, line_weight);
-            let memory = self.planes_around(h, |area| area, 1.0).into();
-            let vertex = &mut self.vertices[v];
-            (vertex.fan, vertex.memory) = (fan, memory);
-        }
-    }
-
+impl Part<'_> {
     /// The planes that a collapse at the origin of a half-edge is to keep to.
     ///
     /// The weight of a face is more than its area, and [`Copy::candidate`] adds to that: what counts is the mean distance,
@@ -80,27 +70,31 @@ impl Copy {
         self.planes_around(first, weigh, line_weight)
     }
 
+    /// The planes that the error is told from.
+    pub(super) fn faces_around(&self, first: u32) -> Planes {
+        self.planes_around(first, |area| area, 1.0)
+    }
+
     /// The planes of the faces around the origin of a half-edge, each with a weight by its area, and those that stand
     /// upright on these faces along feature edges, by the square of the edge.
     fn planes_around(&self, first: u32, weigh: impl Fn(f64) -> f64, line_weight: f64) -> Planes {
         let mut planes = Planes::default();
-        let at = self.vertex(self.origin(first)).position;
-        let end = |h: u32| self.vertex(self.origin(h ^ 1)).position - at;
+        let at = self.spot(self.origin(first)).position;
         let mut h = first;
-        let mut along = end(h);
+        let (mut end, mut next) = self.around(h);
+        let mut along = self.spot(end).position - at;
         loop {
             // The face to the right of this spoke lies between it and the next.
-            let after = self.next(h ^ 1);
-            let next_along = end(after);
+            let after = next;
+            (end, next) = self.around(after);
+            let next_along = self.spot(end).position - at;
             if !self.is_open(h ^ 1) {
                 let double_area = next_along.cross(along);
                 let square = double_area.length_squared();
-                // Below, what rounding leaves of no area.
-                if square > 1e-300 {
-                    let length = square.sqrt();
-                    planes = planes + Planes::one(double_area, weigh(0.5 * length) / square);
+                if square > NO_AREA {
+                    planes = planes + Planes::one(double_area, weigh(0.5 * square.sqrt()) / square);
                     for (h, along) in [(h, along), (after, next_along)] {
-                        if self.edges[h as usize >> 1].is_feature {
+                        if self.is_feature(h) {
                             // A vanishing edge has no direction, and no weight either.
                             let upright = along.cross(double_area).normalize_or_zero();
                             let weight = line_weight * weigh(along.length_squared());
@@ -117,18 +111,21 @@ impl Copy {
     }
 }
 
+/// The square of twice an area, below which it is what rounding leaves of none.
+const NO_AREA: f64 = 1e-300;
+
 /// The weight of a face by its area.
 #[inline]
 fn weigh(area: f64) -> f64 {
     area * area.sqrt()
 }
 
-/// The plane of one face as it counts in a fan, times a factor.
+/// The plane of one face as it counts in a fan.
 #[inline]
-pub(super) fn plane(double_area: DVec3, factor: f64) -> Planes {
+pub(super) fn plane(double_area: DVec3) -> Planes {
     let square = double_area.length_squared();
-    let weight = weigh(0.5 * square.sqrt()) / square;
-    if square > 1e-300 { Planes::one(double_area, factor * weight) } else { Planes::default() }
+    let weight = if square > NO_AREA { weigh(0.5 * square.sqrt()) / square } else { 0.0 };
+    Planes::one(double_area, weight)
 }
 
 /// By slot; empty if none is asked for.

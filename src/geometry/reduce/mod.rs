@@ -1,22 +1,27 @@
 //! Reduction to fewer faces by edge collapse.
 //!
-//! The work is done on a compact copy of the mesh ([`copy`]) whose edges wait in a [`queue`] by what their collapse costs
-//! ([`place`], [`quadric`]); [`attempt`] does or refuses one, [`run`] is the loop, and [`write`] brings the result back, so that what is left keeps its keys.
+//! The work is done on a compact copy of the mesh ([`copy`]; [`part`] holds its records) whose edges wait in a [`queue`] by
+//! what their collapse costs ([`place`], [`quadric`]); [`attempt`] does or refuses one, [`run`] is the loop, [`rounds`] has
+//! several of them on the parts of a large mesh, and [`write`] brings the result back, so that what is left keeps its keys.
 
 mod attempt;
 mod copy;
 mod features;
+mod part;
 mod place;
 mod quadric;
 mod queue;
+mod rounds;
 mod run;
+mod told;
 mod write;
 
 use crate::{Cancelled, Control, EdgeKey, FaceKey, Mesh, VertexKey};
 use attempt::Guards;
 use copy::Copy;
 use glam::DVec3;
-use run::{Account, Run};
+use rounds::Outcome;
+use run::Account;
 use std::fmt;
 
 /// A vertex with more edges stays where it is while others go into it: walking around it each time would be quadratic.
@@ -125,6 +130,14 @@ pub enum ReduceError {
         /// What it was.
         value: f64,
     },
+    /// The mesh has more edges than a reduction can number.
+    #[error("{edges} edges are more than {limit}")]
+    TooLarge {
+        /// How many there are.
+        edges: usize,
+        /// How many there may be.
+        limit: usize,
+    },
     /// The hook said stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -171,6 +184,8 @@ enum Refusal {
     Flip,
     Shape,
     ErrorBound,
+    /// An end waits until the parts have come together.
+    Later,
 }
 
 /// How often a collapse was refused, by reason; an edge counts again whenever it is looked at again.
@@ -204,7 +219,7 @@ pub struct Reduced {
     pub collapses: usize,
     /// Why it ended.
     pub stopped: Stopped,
-    /// The largest error of a collapse, as [`ReduceTarget::MaxError`] measures it; in the units of the mesh.
+    /// The largest error of a vertex that is left, as [`ReduceTarget::MaxError`] measures it; in the units of the mesh.
     pub max_error: f64,
     /// What was refused on the way.
     pub refusals: Refusals,
@@ -323,9 +338,13 @@ impl Mesh {
         goal: &Goal,
         options: &mut ReduceOptions<'_>,
     ) -> Result<Told, ReduceError> {
+        let (edges, limit) = (self.edge_count(), part::MAX_EDGES);
+        if edges > limit {
+            return Err(ReduceError::TooLarge { edges, limit });
+        }
         let mut copy = Copy::of(self);
         copy.mark(self, options);
-        copy.sum_planes(options.line_weight);
+        copy.sum_planes(options.line_weight, goal.error.is_finite());
         options.control.report("collapse", 0.1)?;
         let guards = Guards {
             turn: options.max_turn.cos().powi(2),
@@ -334,21 +353,24 @@ impl Mesh {
             line_weight: options.line_weight,
         };
         let is_watched = !self.columns.is_empty() || self.undo.is_some() || self.changes.is_some();
-        let mut run = Run::new(guards, is_watched);
-        let is_met = run.reduce(&mut copy, self.face_count() - goal.faces, &mut options.control)?;
-        let Run { account, log, .. } = run;
-        let merged = copy.merged(self);
+        let faces = self.face_count() - goal.faces;
+        let Outcome { is_met, account, log } =
+            copy.reduce(faces, guards, is_watched, &mut options.control)?;
+        let roots = copy.roots();
+        // At most the bound, but for rounding.
+        let max_error = copy.frame.length(copy.error(self, &roots)).min(goal.error);
+        let merged = copy.merged(self, &roots);
         options.control.report("write", 0.9)?;
         match log {
             Some(log) => self.replay(&copy, log),
-            None => self.take_over(&copy),
+            None => self.take_over(&mut copy),
         }
         let stopped = match (is_met, account.is_bounded) {
             (true, _) => Stopped::Target,
             (false, true) => Stopped::ErrorBound,
             (false, false) => Stopped::NoLegalCollapse,
         };
-        Ok(Told { account, stopped, merged, max_error: copy.frame.length(account.max_error) })
+        Ok(Told { account, stopped, merged, max_error })
     }
 
     fn is_triangle_slot(&self, f: u32) -> bool {

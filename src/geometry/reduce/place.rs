@@ -1,9 +1,9 @@
 //! Where an edge goes, and what that costs.
 
-use super::copy::{Copy, Vertex};
+use super::Refusal;
 use super::features::Hold;
-use super::quadric::{Factors, Quadric};
-use super::{HEAVY, Refusal};
+use super::part::{Part, Spot};
+use super::quadric::{Factors, Planes, Quadric};
 use glam::DVec3;
 
 /// How strongly a vertex is drawn to the middle of its edge, as a share of the planes' weight: decides where the planes
@@ -43,21 +43,26 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// The planes that the new vertex would stand for, about its place.
-    pub(super) fn memory(&self, a: &Vertex, b: &Vertex) -> Quadric {
-        a.memory.about(self.place + self.half) + b.memory.about(self.place - self.half)
+    pub(super) fn memory(&self, a: &Quadric, b: &Quadric) -> Quadric {
+        a.about(self.place + self.half) + b.about(self.place - self.half)
     }
 
     /// The root of the mean squared distance of the place to these planes.
     pub(super) fn error(&self, memory: &Quadric) -> f64 {
-        let mean = memory.at(DVec3::ZERO) / memory.weight() - NOISE * 4.0 * self.half.length_squared();
-        if mean > 0.0 { mean.sqrt() } else { 0.0 }
+        error(memory.at(DVec3::ZERO), memory.weight(), 4.0 * self.half.length_squared())
     }
+}
+
+/// The root of the mean of squared distances, by their sum, their weight, and the square of the length they stretch over.
+pub(super) fn error(sum: f64, weight: f64, length_squared: f64) -> f64 {
+    let mean = sum / weight - NOISE * length_squared;
+    if mean > 0.0 { mean.sqrt() } else { 0.0 }
 }
 
 /// Which end may go, by what holds the ends of the edge.
 #[inline]
-fn way(a: &Vertex, b: &Vertex, is_feature: bool) -> Result<Way, Refusal> {
-    let way = match (a.hold, b.hold) {
+fn way(a: &Spot, b: &Spot, is_feature: bool) -> Result<Way, Refusal> {
+    let way = match (a.hold(), b.hold()) {
         (Hold::Free, Hold::Free) => Way::Anywhere,
         (Hold::Free, _) => Way::ToTarget,
         (_, Hold::Free) => Way::ToOrigin,
@@ -68,7 +73,7 @@ fn way(a: &Vertex, b: &Vertex, is_feature: bool) -> Result<Way, Refusal> {
         (Hold::Fixed, Hold::Line) => Way::ToOrigin,
     };
     // A vertex of many edges stays where it is, so that nobody has to walk around it.
-    match (way, a.valence > HEAVY, b.valence > HEAVY) {
+    match (way, a.is_heavy(), b.is_heavy()) {
         (way, false, false) => Ok(way),
         (Way::Anywhere | Way::ToTarget, false, true) => Ok(Way::ToTarget),
         (Way::Anywhere | Way::ToOrigin, true, false) => Ok(Way::ToOrigin),
@@ -76,15 +81,21 @@ fn way(a: &Vertex, b: &Vertex, is_feature: bool) -> Result<Way, Refusal> {
     }
 }
 
-impl Copy {
+impl Part<'_> {
     /// What collapsing an edge would do, as far as its ends tell.
     #[inline]
     pub(super) fn candidate(&self, e: u32) -> Result<Candidate, Refusal> {
-        let (a, b) = (self.vertex(self.origin(2 * e)), self.vertex(self.origin(2 * e + 1)));
-        let way = way(a, b, self.edges[e as usize].is_feature)?;
-        let half = (b.position - a.position) * 0.5;
-        let middle = a.position + half;
-        let quadric = a.fan.about(half) + b.fan.about(-half);
+        let edge = self.edge(e);
+        let [a, b] = edge.ends();
+        // Within a part, a vertex that does not wait has all its neighbours at hand.
+        if self.spot(a.min(b)).is_seam() || self.spot(a.max(b)).is_seam() {
+            return Err(Refusal::Later);
+        }
+        let ([from, to], [fan_a, fan_b]) = ([a, b].map(|v| self.spot(v)), [a, b].map(|v| self.fan(v)));
+        let way = way(from, to, edge.is_feature())?;
+        let half = (to.position - from.position) * 0.5;
+        let middle = from.position + half;
+        let quadric = Planes::joined(fan_a, fan_b, half);
         let (mut place, mut factors) = (DVec3::ZERO, None);
         match way {
             Way::ToTarget => place = half,

@@ -4,7 +4,7 @@
 //! of its own, near where it is small, so that the digits do not go into the distance from the origin.
 
 use glam::DVec3;
-use std::ops::Add;
+use std::ops::{Add, Sub};
 
 /// The sum of `weight * normal normalᵀ` over planes: xx xy xz yy yz zz.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,6 +26,12 @@ impl Planes {
         Self([m.x * n.x, m.x * n.y, m.x * n.z, m.y * n.y, m.y * n.z, m.z * n.z])
     }
 
+    /// The sum of the weights.
+    #[inline]
+    pub(super) fn weight(&self) -> f64 {
+        self.0[0] + self.0[3] + self.0[5]
+    }
+
     #[inline]
     fn times(&self, x: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.0;
@@ -34,6 +40,19 @@ impl Planes {
             xy * x.x + yy * x.y + yz * x.z,
             xz * x.x + yz * x.y + zz * x.z,
         )
+    }
+
+    /// Two sums about the middle between two points: all of the one pass through the point at `-half`, all of the other
+    /// through that at `half`.
+    #[inline]
+    pub(super) fn joined(a: &Self, b: &Self, half: DVec3) -> Quadric {
+        let (mut sum, mut difference) = (a.0, a.0);
+        for i in 0..6 {
+            sum[i] += b.0[i];
+            difference[i] -= b.0[i];
+        }
+        let (sum, difference) = (Self(sum), Self(difference));
+        Quadric { a: sum, b: difference.times(half), c: sum.times(half).dot(half) }
     }
 
     /// Where all of them pass through one point, as seen from the point at `by`.
@@ -53,6 +72,11 @@ impl Quadric {
     }
 
     #[inline]
+    pub(super) fn at_origin(&self) -> f64 {
+        self.c
+    }
+
+    #[inline]
     pub(super) fn at(&self, x: DVec3) -> f64 {
         (self.b + self.b + self.a.times(x)).dot(x) + self.c
     }
@@ -60,7 +84,7 @@ impl Quadric {
     /// The sum of the weights.
     #[inline]
     pub(super) fn weight(&self) -> f64 {
-        self.a.0[0] + self.a.0[3] + self.a.0[5]
+        self.a.weight()
     }
 
     /// Where it is least, drawn towards the point it is about by `pull` times its weight, so that there is one such place:
@@ -76,6 +100,17 @@ impl From<Planes> for Quadric {
     /// About the point through which all of them pass.
     fn from(a: Planes) -> Self {
         Self { a, b: DVec3::ZERO, c: 0.0 }
+    }
+}
+
+impl Sub for Planes {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        let mut a = self.0;
+        a.iter_mut().zip(other.0).for_each(|(a, b)| *a -= b);
+        Self(a)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The queue of edges: buckets of costs that differ by less than half a percent.
+//! The queue of edges: buckets of costs that differ by less than two percent.
 
 /// Edges by cost. A cost counts by the upper bits of its `f32`, which order as the number does; within a bucket edges go
 /// by number, so that they lie together in memory.
@@ -11,9 +11,11 @@ pub(super) struct Queue {
     done: usize,
 }
 
-const SHIFT: u32 = 15;
+const SHIFT: u32 = 17;
+/// So many buckets for costs within a factor of two.
+pub(super) const DOUBLING: usize = 1 << (23 - SHIFT);
 /// No bucket: the edge waits for something around it to change.
-pub(super) const PARKED: u32 = u32::MAX;
+pub(super) const PARKED: u16 = u16::MAX;
 
 impl Queue {
     pub(super) fn new() -> Self {
@@ -24,21 +26,24 @@ impl Queue {
 
     /// The bucket for a cost; none that has been emptied already.
     #[inline]
-    pub(super) fn bucket(&self, cost: f64) -> u32 {
-        (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).clamp(self.at, self.buckets.len() - 1) as u32
+    pub(super) fn bucket(&self, cost: f64) -> u16 {
+        (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).clamp(self.at, self.buckets.len() - 1) as u16
     }
 
     #[inline]
-    pub(super) fn push(&mut self, bucket: u32, edge: u32) {
+    pub(super) fn push(&mut self, bucket: u16, edge: u32) {
         self.buckets[bucket as usize].push(edge);
     }
 
     /// The next entry and its bucket: out of date if the edge has another bucket by now.
     #[inline]
-    pub(super) fn pop(&mut self) -> Option<(u32, u32)> {
+    pub(super) fn pop(&mut self, end: usize) -> Option<(u32, u16)> {
         while self.done == self.list.len() {
+            if self.at >= end {
+                return None;
+            }
             while self.buckets[self.at].is_empty() {
-                if self.at + 1 == self.buckets.len() {
+                if self.at + 1 >= end.min(self.buckets.len()) {
                     return None;
                 }
                 self.buckets[self.at] = Vec::new();
@@ -50,13 +55,33 @@ impl Queue {
             self.list.sort_unstable();
         }
         self.done += 1;
-        Some((self.list[self.done - 1], self.at as u32))
+        Some((self.list[self.done - 1], self.at as u16))
     }
 
     /// What comes next, as far as it is in order already.
     #[inline]
     pub(super) fn ahead(&self, count: usize) -> &[u32] {
         &self.list[self.done..(self.done + count).min(self.list.len())]
+    }
+
+    /// The first bucket that holds anything.
+    pub(super) fn first(&mut self) -> Option<usize> {
+        if self.done < self.list.len() {
+            return Some(self.at);
+        }
+        (self.at..self.buckets.len()).find(|&i| !self.buckets[i].is_empty())
+    }
+
+    /// How many entries there are in the buckets before `end`.
+    pub(super) fn count(&self, end: usize) -> usize {
+        let begun = if self.at < end { self.list.len() - self.done } else { 0 };
+        let buckets = self.buckets.get(self.at..end.min(self.buckets.len())).unwrap_or_default();
+        begun + buckets.iter().map(Vec::len).sum::<usize>()
+    }
+
+    /// The bucket that is being emptied.
+    pub(super) fn at(&self) -> u16 {
+        self.at as u16
     }
 
     pub(super) fn is_at_batch(&self, of: usize) -> bool {
@@ -80,7 +105,8 @@ mod tests {
         for (edge, &cost) in (0..).zip(&costs) {
             queue.push(queue.bucket(cost), edge);
         }
-        let order: Vec<u32> = std::iter::from_fn(|| queue.pop()).map(|p| p.0).collect();
+        assert_eq!((queue.first(), queue.count(usize::MAX)), (Some(0), 7));
+        let order: Vec<u32> = std::iter::from_fn(|| queue.pop(usize::MAX)).map(|p| p.0).collect();
         assert_eq!(order, [1, 3, 6, 4, 2, 0, 5]);
         assert_eq!(queue.bucket(0.0), queue.bucket(f64::INFINITY), "no way back");
         queue.rewind();

@@ -1,14 +1,14 @@
 //! The loop: the cheapest edge is collapsed, until the target is met or nothing is left to collapse.
 
 use super::attempt::{Guards, Scratch};
-use super::copy::Copy;
+use super::part::Part;
 use super::queue::{PARKED, Queue};
 use super::{Refusal, Refusals};
 use crate::{Cancelled, Control};
 
 /// A reduction under way.
 pub(super) struct Run {
-    queue: Queue,
+    pub(super) queue: Queue,
     scratch: Scratch,
     guards: Guards,
     pub(super) account: Account,
@@ -16,11 +16,12 @@ pub(super) struct Run {
     pub(super) log: Option<Vec<Step>>,
 }
 
-/// A collapse to be done again on the mesh.
+/// A collapse to be done again on the mesh, by numbers in the copy.
+#[derive(Clone, Copy)]
 pub(super) struct Step {
-    /// The slot of the half-edge.
     pub(super) halfedge: u32,
-    /// In local units; `None` if the target was never moved.
+    /// The vertex that is left, and where it was then, in local units; `None` if it was never moved.
+    pub(super) vertex: u32,
     pub(super) place: Option<glam::DVec3>,
 }
 
@@ -29,8 +30,6 @@ pub(super) struct Step {
 pub(super) struct Account {
     pub(super) collapses: usize,
     pub(super) refusals: Refusals,
-    /// In local units.
-    pub(super) max_error: f64,
     /// Whether what is left was refused for its error, too.
     pub(super) is_bounded: bool,
 }
@@ -41,47 +40,64 @@ impl Run {
         Self { queue: Queue::new(), scratch: Scratch::default(), guards, account: Account::default(), log }
     }
 
-    /// Collapses until `faces` are gone. Whether that was met.
-    pub(super) fn reduce(
-        &mut self,
-        copy: &mut Copy,
-        faces: usize,
-        control: &mut Control<'_>,
-    ) -> Result<bool, Cancelled> {
-        loop {
-            // What was refused may have become legal through changes further away: only a sweep in which nothing
-            // could be done is the end.
-            self.queue.rewind();
-            self.account.is_bounded = false;
-            self.fill(copy);
-            let before = self.account.collapses;
-            if self.drain(copy, faces, control)? {
-                return Ok(true);
-            }
-            if self.account.collapses == before {
-                return Ok(false);
-            }
+    /// Of the same kind, with nothing done.
+    pub(super) fn another(&self) -> Self {
+        Self::new(self.guards, self.log.is_some())
+    }
+
+    /// Counts what another has done elsewhere before.
+    pub(super) fn add(&mut self, other: Self) {
+        self.account.collapses += other.account.collapses;
+        self.account.refusals += other.account.refusals;
+        if let (Some(log), Some(more)) = (&mut self.log, other.log) {
+            log.extend(more);
         }
     }
 
-    fn fill(&mut self, copy: &mut Copy) {
-        for e in 0..copy.edges.len() as u32 {
-            if !copy.edges[e as usize].is_dead {
-                self.put(copy, e);
+    /// Collapses until `faces` are gone. Whether that was met. The queue `is_full` if every edge was put into it.
+    pub(super) fn reduce(
+        &mut self,
+        part: &mut Part<'_>,
+        faces: usize,
+        is_full: bool,
+        control: &mut Control<'_>,
+    ) -> Result<bool, Cancelled> {
+        let mut before = is_full.then_some(self.account.collapses);
+        loop {
+            if self.drain(part, faces, usize::MAX, control)? {
+                return Ok(true);
+            }
+            // What was refused may have become legal through changes further away: only a sweep in which nothing
+            // could be done is the end.
+            if before == Some(self.account.collapses) {
+                return Ok(false);
+            }
+            before = Some(self.account.collapses);
+            self.queue.rewind();
+            self.account.is_bounded = false;
+            self.fill(part);
+        }
+    }
+
+    /// Puts every edge into the queue.
+    pub(super) fn fill(&mut self, part: &mut Part<'_>) {
+        for i in 0..part.edges.len() as u32 {
+            if !part.edges[i as usize].is_dead() {
+                self.put(part, part.first_edge + i);
             }
         }
     }
 
     /// Puts an edge where its cost belongs.
     #[inline]
-    fn put(&mut self, copy: &mut Copy, e: u32) {
-        let bucket = match copy.candidate(e) {
+    pub(super) fn put(&mut self, part: &mut Part<'_>, e: u32) {
+        let bucket = match part.candidate(e) {
             Ok(candidate) => self.queue.bucket(candidate.cost),
             Err(refusal) => self.refuse(refusal),
         };
-        let edge = &mut copy.edges[e as usize];
-        if edge.bucket != bucket {
-            edge.bucket = bucket;
+        let key = part.key_mut(e);
+        if *key != bucket {
+            *key = bucket;
             if bucket != PARKED {
                 self.queue.push(bucket, e);
             }
@@ -89,64 +105,73 @@ impl Run {
     }
 
     /// Counts a refusal; the edge belongs nowhere.
-    fn refuse(&mut self, refusal: Refusal) -> u32 {
+    fn refuse(&mut self, refusal: Refusal) -> u16 {
         self.account.refusals.count(refusal);
         self.account.is_bounded |= refusal == Refusal::ErrorBound;
         PARKED
     }
 
-    fn drain(&mut self, copy: &mut Copy, faces: usize, control: &mut Control<'_>) -> Result<bool, Cancelled> {
-        let total = faces.min(copy.edges.len()).max(1);
+    /// Collapses until `faces` are gone or the buckets before `end` are empty. Whether they are gone.
+    pub(super) fn drain(
+        &mut self,
+        part: &mut Part<'_>,
+        faces: usize,
+        end: usize,
+        control: &mut Control<'_>,
+    ) -> Result<bool, Cancelled> {
+        let total = faces.min(part.edges.len()).max(1);
         let mut taken = 0u32;
-        while copy.removed < faces {
+        while part.removed < faces {
             if self.queue.is_at_batch(32) {
-                touch(copy, self.queue.ahead(32));
+                touch(part, self.queue.ahead(32), self.queue.at());
             }
-            let Some((e, bucket)) = self.queue.pop() else { return Ok(false) };
+            let Some((e, bucket)) = self.queue.pop(end) else { return Ok(false) };
             taken += 1;
             if taken.is_multiple_of(1 << 15) {
-                let share = (copy.removed as f64 / total as f64).min(1.0);
+                let share = (part.removed as f64 / total as f64).min(1.0);
                 control.report("collapse", 0.1 + 0.75 * share)?;
             }
-            if copy.edges[e as usize].bucket != bucket {
+            if part.key(e) != bucket {
                 continue;
             }
-            let candidate = match copy.candidate(e) {
+            let candidate = match part.candidate(e) {
                 // It has become dearer since: the neighbours' faces have moved.
                 Ok(candidate) if self.queue.bucket(candidate.cost) > bucket => {
-                    self.put(copy, e);
+                    self.put(part, e);
                     continue;
                 }
                 other => other,
             };
-            copy.edges[e as usize].bucket = PARKED;
-            match candidate.and_then(|c| copy.attempt(e, c, self.guards, &mut self.scratch)) {
+            *part.key_mut(e) = PARKED;
+            match candidate.and_then(|c| part.attempt(e, c, self.guards, &mut self.scratch)) {
                 Err(refusal) => _ = self.refuse(refusal),
-                Ok(done) => {
-                    self.account.collapses += 1;
-                    self.account.max_error = self.account.max_error.max(done.error);
-                    if let Some(log) = &mut self.log {
-                        let target = copy.vertex(copy.origin(done.halfedge ^ 1));
-                        let slot = 2 * copy.edge_slot[done.halfedge as usize >> 1] + (done.halfedge & 1);
-                        log.push(Step { halfedge: slot, place: target.is_moved.then_some(target.position) });
-                    }
-                    // While all of this is at hand.
-                    for i in 1..self.scratch.goes.spokes.len() {
-                        self.put_again(copy, self.scratch.goes.spokes[i] >> 1);
-                    }
-                    for i in 1..self.scratch.stays.spokes.len() {
-                        self.put_again(copy, self.scratch.stays.spokes[i] >> 1);
-                    }
-                }
+                Ok(halfedge) => self.follow(part, halfedge),
             }
         }
         Ok(true)
     }
 
+    /// After a collapse, while all of this is at hand.
     #[inline]
-    fn put_again(&mut self, copy: &mut Copy, e: u32) {
-        if !copy.edges[e as usize].is_dead {
-            self.put(copy, e);
+    fn follow(&mut self, part: &mut Part<'_>, halfedge: u32) {
+        self.account.collapses += 1;
+        if let Some(log) = &mut self.log {
+            let vertex = part.origin(halfedge ^ 1);
+            let target = part.spot(vertex);
+            log.push(Step { halfedge, vertex, place: target.is_moved().then_some(target.position) });
+        }
+        for i in 1..self.scratch.goes.spokes.len() {
+            self.put_again(part, self.scratch.goes.spokes[i] >> 1);
+        }
+        for i in 1..self.scratch.stays.spokes.len() {
+            self.put_again(part, self.scratch.stays.spokes[i] >> 1);
+        }
+    }
+
+    #[inline]
+    fn put_again(&mut self, part: &mut Part<'_>, e: u32) {
+        if !part.edge(e).is_dead() {
+            self.put(part, e);
         }
     }
 }
@@ -161,19 +186,38 @@ impl Refusals {
             Refusal::Flip => &mut self.flip,
             Refusal::Shape => &mut self.shape,
             Refusal::ErrorBound => &mut self.error_bound,
+            Refusal::Later => return,
         } += 1;
     }
 }
 
+impl std::ops::AddAssign for Refusals {
+    fn add_assign(&mut self, other: Self) {
+        self.topology += other.topology;
+        self.feature += other.feature;
+        self.locked += other.locked;
+        self.valence += other.valence;
+        self.flip += other.flip;
+        self.shape += other.shape;
+        self.error_bound += other.error_bound;
+    }
+}
+
 /// Brings what the next collapses will look at into the cache: loads that do not wait for one another.
-fn touch(copy: &Copy, edges: &[u32]) {
+#[inline]
+fn touch(part: &Part<'_>, edges: &[u32], bucket: u16) {
     let mut sum = 0u64;
     for &e in edges {
+        if part.key(e) != bucket {
+            continue;
+        }
         for first in [2 * e, 2 * e + 1] {
             let mut h = first;
             for _ in 0..12 {
-                sum = sum.wrapping_add(copy.vertex(copy.origin(h ^ 1)).position.x.to_bits());
-                h = copy.next(h ^ 1);
+                let (v, after) = part.around(h);
+                sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
+                sum = sum.wrapping_add(part.fan(v).weight().to_bits());
+                h = after;
                 if h == first {
                     break;
                 }

@@ -6,30 +6,35 @@ use crate::matching::NONE;
 use crate::{Mesh, VertexKey};
 
 impl Copy {
-    /// Each vertex that is gone with the one that it went into in the end, in the order of the mesh's slots.
-    pub(super) fn merged(&mut self, mesh: &Mesh) -> Vec<(VertexKey, VertexKey)> {
-        let mut pairs = Vec::new();
-        for v in 0..self.vertices.len() as u32 {
-            let root = self.root(v);
-            if root != v {
-                pairs.push((self.vertex_slot[v as usize], self.vertex_slot[root as usize]));
+    /// The live vertex that each vertex went into, or itself.
+    pub(super) fn roots(&self) -> Vec<u32> {
+        let mut roots: Vec<u32> = (0..)
+            .zip(&self.spots)
+            .map(|(v, spot): (u32, _)| if spot.is_dead() { spot.link } else { v })
+            .collect();
+        for v in 0..roots.len() {
+            let mut root = roots[v];
+            while roots[root as usize] != root {
+                root = roots[root as usize];
+            }
+            let mut v = v;
+            while roots[v] != root {
+                v = std::mem::replace(&mut roots[v], root) as usize;
             }
         }
-        pairs.sort_unstable();
-        pairs.into_iter().map(|(v, w)| (mesh.vertices.key(v), mesh.vertices.key(w))).collect()
+        roots
     }
 
-    /// The live vertex that a vertex went into; what lies on the way is led there directly.
-    pub(super) fn root(&mut self, v: u32) -> u32 {
-        let mut root = v;
-        while self.vertex(root).into != NONE {
-            root = self.vertex(root).into;
+    /// Each vertex that is gone with the one that it went into in the end, in the order of the mesh's slots.
+    pub(super) fn merged(&self, mesh: &Mesh, roots: &[u32]) -> Vec<(VertexKey, VertexKey)> {
+        let mut into = vec![NONE; mesh.vertices.slot_count()];
+        for (v, &root) in roots.iter().enumerate() {
+            if root as usize != v {
+                into[self.vertex_slot[v] as usize] = self.vertex_slot[root as usize];
+            }
         }
-        let mut v = v;
-        while v != root {
-            v = std::mem::replace(&mut self.vertices[v as usize].into, root);
-        }
-        root
+        let gone = (0..).zip(&into).filter(|pair| *pair.1 != NONE);
+        gone.map(|(v, &root): (u32, _)| (mesh.vertices.key(v), mesh.vertices.key(root))).collect()
     }
 
     fn slot(&self, h: u32) -> u32 {
@@ -40,7 +45,8 @@ impl Copy {
 impl Mesh {
     /// Does the collapses again, one by one, so that columns, checkpoints and listeners see them.
     pub(super) fn replay(&mut self, copy: &Copy, log: Vec<Step>) {
-        for Step { halfedge, place } in log {
+        for Step { halfedge, place, .. } in log {
+            let halfedge = copy.slot(halfedge);
             let stays = self.origin[halfedge as usize ^ 1] as usize;
             let position = place.map_or(self.positions[stays], |p| copy.frame.global(p));
             debug_assert_eq!(self.check_collapse(self.halfedge_key(halfedge), position), Ok(()));
@@ -49,20 +55,21 @@ impl Mesh {
     }
 
     /// Takes the links over as they are: for a mesh without user data, checkpoints and listeners.
-    pub(super) fn take_over(&mut self, copy: &Copy) {
+    pub(super) fn take_over(&mut self, copy: &mut Copy) {
         let mut number = vec![NONE; self.edges.slot_count()];
         (0..).zip(&copy.edge_slot).for_each(|(i, &e)| number[e as usize] = i);
         let mut is_left = vec![false; self.faces.slot_count()];
-        for (i, (edge, &slot)) in copy.edges.iter().zip(&copy.edge_slot).enumerate() {
-            if edge.is_dead {
+        for i in 0..copy.edges.len() {
+            if copy.edges[i].is_dead() {
                 continue;
             }
+            let ends = copy.edges[i].ends();
             for side in 0..2 {
-                let (h, at) = (2 * i as u32 + side, (2 * slot + side) as usize);
-                let v = copy.vertex_slot[copy.origin(h) as usize];
-                let f = copy.faces[i][side as usize];
-                self.next[at] = copy.slot(copy.next(h));
-                self.prev[at] = copy.slot(copy.prev(h));
+                let (h, at) = (2 * i as u32 + side as u32, copy.slot(2 * i as u32 + side as u32));
+                let (next, v) = (copy.slot(copy.edges[i].next(side)), copy.vertex_slot[ends[side] as usize]);
+                let (f, at) = (copy.faces[i][side], at as usize);
+                self.next[at] = next;
+                self.prev[next as usize] = copy.slot(h);
                 self.origin[at] = v;
                 self.face[at] = f;
                 match is_left.get_mut(f as usize) {
@@ -71,12 +78,12 @@ impl Mesh {
                 }
             }
         }
-        for (i, &e) in copy.edge_slot.iter().enumerate() {
+        for (edge, &e) in copy.edges.iter().zip(&copy.edge_slot) {
             // A vertex inside keeps its half-edge if that is left, and otherwise takes any.
-            if !copy.edges[i].is_dead {
+            if !edge.is_dead() {
                 for h in [2 * e, 2 * e + 1] {
                     let out = &mut self.vertex_halfedge[self.origin[h as usize] as usize];
-                    let is_dead = copy.edges[number[*out as usize >> 1] as usize].is_dead;
+                    let is_dead = copy.edges[number[*out as usize >> 1] as usize].is_dead();
                     if is_dead || self.origin[*out as usize] != self.origin[h as usize] {
                         *out = h;
                     }
@@ -86,22 +93,22 @@ impl Mesh {
         for f in 0..is_left.len() as u32 {
             if is_left[f as usize] {
                 let first = self.face_halfedge[f as usize];
-                let now = copy.successor(2 * number[first as usize >> 1] + (first & 1));
+                let now = copy.whole().successor(2 * number[first as usize >> 1] + (first & 1));
                 self.face_halfedge[f as usize] = copy.slot(now);
             } else if self.faces.is_live(f) {
                 self.faces.remove(f);
             }
         }
         for (edge, &slot) in copy.edges.iter().zip(&copy.edge_slot) {
-            if edge.is_dead {
+            if edge.is_dead() {
                 self.edges.remove(slot);
             }
         }
-        for (vertex, &slot) in copy.vertices.iter().zip(&copy.vertex_slot) {
-            if vertex.into != NONE {
+        for (spot, &slot) in copy.spots.iter().zip(&copy.vertex_slot) {
+            if spot.is_dead() {
                 self.vertices.remove(slot);
-            } else if vertex.is_moved {
-                self.positions[slot as usize] = copy.frame.global(vertex.position);
+            } else if spot.is_moved() {
+                self.positions[slot as usize] = copy.frame.global(spot.position);
             }
         }
     }

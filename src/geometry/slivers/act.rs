@@ -22,7 +22,7 @@ impl Run {
         let first = self.mesh.face_halfedge[f as usize];
         let h = self.mesh.loop_slots(first).nth(corner).unwrap_or(first);
         let done = match kind {
-            SliverKind::Needle => self.shrink(h),
+            SliverKind::Needle => self.shrink_any(f),
             SliverKind::Cap => self.merge(h),
             SliverKind::Flat => return self.cut(f),
         };
@@ -31,6 +31,33 @@ impl Run {
             let is_triangle = self.mesh.is_triangle(self.mesh.face_halfedge[f as usize]);
             if self.stage == 0 || !is_triangle { Err(obstacle) } else { self.collapse_any(f, obstacle) }
         })
+    }
+
+    /// Collapses one of the short edges of a face, the shortest first.
+    fn shrink_any(&mut self, f: u32) -> Result<Done, SliverObstacle> {
+        let mut short = self.edges_of(f);
+        short.retain(|e| f64::from_bits(e.0) <= self.gauge.tolerance);
+        let mut refused = SliverObstacle::Topology;
+        for (i, (_, h)) in short.into_iter().enumerate() {
+            match self.shrink(h) {
+                Ok(done) => return Ok(done),
+                Err(obstacle) if i == 0 => refused = obstacle,
+                Err(_) => {}
+            }
+        }
+        Err(refused)
+    }
+
+    /// The edges of a face by length, whose bits order as it does.
+    fn edges_of(&self, f: u32) -> Vec<(u64, u32)> {
+        let length = |h: u32| {
+            let [a, b] = [h, h ^ 1].map(|h| self.at(self.mesh.origin[h as usize]));
+            a.distance(b).to_bits()
+        };
+        let loop_ = self.mesh.loop_slots(self.mesh.face_halfedge[f as usize]);
+        let mut edges: Vec<(u64, u32)> = loop_.map(|h| (length(h), h)).collect();
+        edges.sort_unstable();
+        edges
     }
 
     /// Collapses a short edge in the better direction.
@@ -92,17 +119,7 @@ impl Run {
 
     /// Collapses any edge of a triangle, the shortest first, whichever moves the surface little enough.
     fn collapse_any(&mut self, f: u32, refused: SliverObstacle) -> Result<Done, SliverObstacle> {
-        let first = self.mesh.face_halfedge[f as usize];
-        let mut edges: Vec<(u64, u32)> = self
-            .mesh
-            .loop_slots(first)
-            .map(|h| {
-                let [a, b] = [h, h ^ 1].map(|h| self.at(self.mesh.origin[h as usize]));
-                (a.distance(b).to_bits(), h)
-            })
-            .collect();
-        edges.sort_unstable();
-        let ways = edges.into_iter().flat_map(|(_, h)| [h, h ^ 1]);
+        let ways = self.edges_of(f).into_iter().flat_map(|(_, h)| [h, h ^ 1]);
         for h in ways {
             if let Ok(done) = self.collapse(h) {
                 return Ok(done);
@@ -137,7 +154,7 @@ impl Run {
         }
         let edge = self.mesh.edges.key(h >> 1);
         let split = self.mesh.split_edge_and_faces(edge, on_edge(s)).map_err(|_| SliverObstacle::Topology)?;
-        let born = split.cuts.iter().filter_map(|cut| self.mesh.face_slot(cut.face)).collect();
+        let born = split.cuts.iter().map(|cut| cut.face).collect();
         let short = self.mesh.find_halfedge(split.vertex, self.mesh.vertices.key(c));
         let collapsed = short.and_then(|short| self.mesh.collapse_into_target(short).ok());
         debug_assert!(collapsed.is_some(), "the merge was found legal");
@@ -191,7 +208,7 @@ impl Run {
         if moved > self.gauge.tolerance && self.stage < 2 {
             return Err(SliverObstacle::Moves);
         }
-        let beside: Vec<u32> = inner.iter().map(|&h| self.mesh.face[h as usize ^ 1]).collect();
+        let beside = inner.iter().map(|&h| self.mesh.faces.key(self.mesh.face[h as usize ^ 1])).collect();
         let key = self.mesh.faces.key(f);
         let removed = self.mesh.remove_face(key).map_err(|refusal| match refusal {
             RemoveFaceError::Pinch(_) => SliverObstacle::Pinch,
@@ -206,39 +223,64 @@ impl Run {
 
     /// Cuts a larger face: along one diagonal that leaves no sliver, or into triangles.
     fn cut(&mut self, f: u32) -> Result<Done, SliverObstacle> {
-        let halfedges: Vec<u32> = self.mesh.loop_slots(self.mesh.face_halfedge[f as usize]).collect();
+        let key = self.mesh.faces.key(f);
         let corners = self.gauge.corners(&self.mesh, f);
         let normal = self.gauge.look(&corners).normal;
-        let n = corners.len();
-        let key = self.mesh.faces.key(f);
-        let mut best: Option<(bool, u64, [usize; 2])> = None;
-        if n <= MANY_CORNERS {
-            for (i, j) in (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j))) {
-                if i == 0 && j + 1 == n || self.mesh.find_slot(corners[i].0, corners[j].0).is_some() {
-                    continue;
-                }
-                let one: Corners = corners[i..=j].iter().copied().collect();
-                let other: Corners = corners[j..].iter().chain(&corners[..=i]).copied().collect();
-                let is_bad = [one, other].iter().any(|part| {
-                    let look = self.gauge.look(part);
-                    look.fault.is_some() || look.normal.dot(normal) < 0.0
-                });
-                let length = corners[i].1.distance(corners[j].1).to_bits();
-                let way = (is_bad, length, [i, j]);
-                best = Some(best.map_or(way, |b| b.min(way)));
+        let way = if corners.len() <= MANY_CORNERS { self.best_diagonal(&corners, normal) } else { None };
+        let done =
+            |born| Done { action: SliverAction::Cut, moved: 0.0, changed: vec![key], born, vertex: None };
+        if way.is_none_or(|w| w.0 > Leaves::None) {
+            if let Ok(cut) = self.mesh.triangulate_face(key) {
+                return Ok(done(cut.cuts.iter().map(|c| c.face).collect()));
+            }
+            if normal != DVec3::ZERO && self.poke(key) {
+                return Ok(done(Vec::new()));
             }
         }
-        let whole =
-            |changed| Done { action: SliverAction::Cut, moved: 0.0, changed, born: vec![f], vertex: None };
-        let is_bad = best.is_none_or(|b| b.0);
-        if is_bad && let Ok(cut) = self.mesh.triangulate_face(key) {
-            let born = cut.cuts.iter().filter_map(|c| self.mesh.face_slot(c.face)).chain([f]).collect();
-            return Ok(Done { born, ..whole(vec![key]) });
-        }
-        let (_, _, ends) = best.ok_or(SliverObstacle::Topology)?;
-        let [from, to] = ends.map(|i| self.mesh.halfedge_key(halfedges[i]));
+        // A cap cut off a face that has height would go back into it.
+        let way = way.filter(|w| w.0 < Leaves::Triangle || normal == DVec3::ZERO);
+        let (_, _, ends) = way.ok_or(SliverObstacle::Topology)?;
+        let first = self.mesh.face_halfedge[f as usize];
+        let nth = |i: usize| self.mesh.loop_slots(first).nth(i).unwrap_or(first);
+        let [from, to] = ends.map(|i| self.mesh.halfedge_key(nth(i)));
         let cut = self.mesh.split_face(from, to).map_err(|_| SliverObstacle::Topology)?;
-        let born = self.mesh.face_slot(cut.face).into_iter().chain([f]).collect();
-        Ok(Done { born, ..whole(vec![key]) })
+        Ok(done(vec![cut.face]))
     }
+
+    /// The diagonal that leaves the least to do, the shortest of several.
+    fn best_diagonal(&mut self, corners: &Corners, normal: DVec3) -> Option<(Leaves, u64, [usize; 2])> {
+        let n = corners.len();
+        let mut best: Option<(Leaves, u64, [usize; 2])> = None;
+        for (i, j) in (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j))) {
+            if i == 0 && j + 1 == n || self.mesh.find_slot(corners[i].0, corners[j].0).is_some() {
+                continue;
+            }
+            let one: Corners = corners[i..=j].iter().copied().collect();
+            let other: Corners = corners[j..].iter().chain(&corners[..=i]).copied().collect();
+            let leaves = [one, other].map(|part| {
+                let look = self.gauge.look(&part);
+                if look.fault.is_none() && look.normal.dot(normal) >= 0.0 {
+                    Leaves::None
+                } else if part.len() > 3 {
+                    Leaves::Larger
+                } else {
+                    Leaves::Triangle
+                }
+            });
+            let leaves = leaves[0].max(leaves[1]);
+            let way = (leaves, corners[i].1.distance(corners[j].1).to_bits(), [i, j]);
+            best = Some(best.map_or(way, |b| b.min(way)));
+        }
+        best
+    }
+}
+
+/// The worst that a cut leaves.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Leaves {
+    None,
+    /// A larger face that is to be cut again.
+    Larger,
+    /// A triangle that is a sliver, or turned over.
+    Triangle,
 }

@@ -7,6 +7,7 @@ use super::run::Run;
 use super::shape::Corners;
 use crate::matching::NONE;
 use crate::{CollapseError, FaceKey};
+use glam::DVec3;
 
 impl Run {
     /// Splits what a collapse was refused for. Whether something was done.
@@ -19,7 +20,9 @@ impl Run {
                 edges.into_iter().flatten().any(|h| self.split_out(h >> 1))
             }
             CollapseError::CommonFace(f) => self.cut_up(f),
-            CollapseError::Duplicate(f, g) => [f, g].into_iter().any(|f| self.poke(f)),
+            CollapseError::Duplicate(f, g) => {
+                [f, g].into_iter().any(|f| self.is_triangle_key(f) && self.poke(f))
+            }
             _ => false,
         }
     }
@@ -39,7 +42,11 @@ impl Run {
         }
     }
 
-    fn may_split(&mut self) -> bool {
+    fn is_triangle_key(&self, f: FaceKey) -> bool {
+        self.mesh.face_slot(f).is_some_and(|f| self.mesh.is_triangle(self.mesh.face_halfedge[f as usize]))
+    }
+
+    fn may_split(&self) -> bool {
         self.splits_left > 0
     }
 
@@ -87,27 +94,28 @@ impl Run {
 
     /// Cuts a larger face into triangles.
     fn cut_up(&mut self, f: FaceKey) -> bool {
-        self.may_split() && self.mesh.triangulate_face(f).is_ok_and(|cut| !cut.cuts.is_empty()) && {
-            // They may be slivers.
-            self.look_around(f);
-            self.note_split()
+        if !self.may_split() {
+            return false;
         }
+        let Ok(cut) = self.mesh.triangulate_face(f) else { return false };
+        let parts = cut.cuts.iter().map(|c| c.face).chain([f]);
+        // They may be slivers.
+        parts.for_each(|part| self.look_at(part));
+        !cut.cuts.is_empty() && self.note_split()
     }
 
-    /// Puts a vertex in the middle of a triangle that is and stays no sliver.
-    fn poke(&mut self, f: FaceKey) -> bool {
+    /// Puts a vertex in the middle of a face, if that makes no sliver and nothing turned over.
+    pub(super) fn poke(&mut self, f: FaceKey) -> bool {
         let Some(slot) = self.mesh.face_slot(f) else { return false };
         let corners = self.gauge.corners(&self.mesh, slot);
-        if corners.len() != 3 {
-            return false;
-        }
-        let own: Vec<_> = corners.iter().map(|c| self.mesh.positions[c.0 as usize]).collect();
-        let middle = own[0] / 3.0 + own[1] / 3.0 + own[2] / 3.0;
+        let (n, normal) = (corners.len(), self.gauge.look(&corners).normal);
+        let middle: DVec3 = corners.iter().map(|c| self.mesh.positions[c.0 as usize] / n as f64).sum();
         let new = (NONE, middle * self.gauge.scale);
-        let mut parts = (0..3).map(|i| [corners[i], corners[(i + 1) % 3], new].into_iter().collect());
-        if parts.any(|part: Corners| self.gauge.look(&part).fault.is_some()) {
-            return false;
-        }
-        self.may_split() && self.mesh.poke_face(f, middle).is_ok() && self.note_split()
+        let is_fit = (0..n).all(|i| {
+            let part: Corners = [corners[i], corners[(i + 1) % n], new].into_iter().collect();
+            let look = self.gauge.look(&part);
+            look.fault.is_none() && look.normal.dot(normal) > 0.0
+        });
+        is_fit && self.may_split() && self.mesh.poke_face(f, middle).is_ok() && self.note_split()
     }
 }

@@ -85,7 +85,9 @@ impl Run {
             self.reach(h)
         };
         let is_far = moved > self.gauge.tolerance && !(at_last && !has_normal);
-        match (balance.goes_down(), is_far) {
+        // A short edge that is gone does not come back, whatever becomes of the faces beside it: no step but splits, which
+        // are counted, makes vertices.
+        match (is_short || balance.goes_down(), is_far) {
             (false, _) => Err(SliverObstacle::NoGain),
             (_, true) => Err(SliverObstacle::Moves),
             _ => Ok(Verdict { moved, strays, faces }),

@@ -171,8 +171,8 @@ pub struct LeftSliver {
     pub obstacle: SliverObstacle,
 }
 
-/// The account of [`Mesh::resolve_slivers`]. Every sliver that was found at the beginning or arose on the way is named
-/// exactly once.
+/// The account of [`Mesh::resolve_slivers`]. Every sliver that was found at the beginning or arose on the way stands in it
+/// exactly once, resolved or left: `found + arose` are as many as both lists together.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SliverAccount {
@@ -301,6 +301,10 @@ impl Mesh {
         let mut run = Run::new(self.clone(), tolerance, found);
         run.resolve(&mut control)?;
         let (mesh, account) = run.finish();
+        if account.resolved.is_empty() {
+            // What was split to make way made none.
+            return Ok(SliverAccount { splits: 0, ..account });
+        }
         *self = mesh;
         Ok(account)
     }

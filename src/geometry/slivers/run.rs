@@ -16,7 +16,7 @@ pub(super) struct Done {
     /// The faces that were there before and changed.
     pub(super) changed: Vec<FaceKey>,
     /// Faces that are new, or have something new beside them.
-    pub(super) born: Vec<u32>,
+    pub(super) born: Vec<FaceKey>,
     /// The vertex around which it happened.
     pub(super) vertex: Option<u32>,
 }
@@ -44,7 +44,7 @@ impl Run {
         let gauge = Gauge::new(&mesh, tolerance);
         let account = SliverAccount { tolerance, found: found.len(), ..SliverAccount::default() };
         // Some tens of times what meshes from life take.
-        let limit = 16 * (mesh.edge_count() as u64) + 8192 * (found.len() as u64) + (1 << 20);
+        let limit = 64 * (mesh.edge_count() as u64) + 512 * (found.len() as u64) + (1 << 20);
         let mut run = Self {
             mesh,
             gauge,
@@ -107,9 +107,7 @@ impl Run {
     fn put_all(&mut self) {
         let all: Vec<FaceKey> = self.open.keys().copied().collect();
         for key in all {
-            if let Some(f) = self.mesh.face_slot(key) {
-                self.put(f);
-            }
+            self.look_at(key);
         }
     }
 
@@ -133,16 +131,10 @@ impl Run {
         self.queue.push(Reverse((place.0, place.1, key)));
     }
 
-    /// Looks at a face and all around its corners.
-    pub(super) fn look_around(&mut self, key: FaceKey) {
-        let Some(f) = self.mesh.face_slot(key) else { return };
-        let corners: Vec<u32> = self
-            .mesh
-            .loop_slots(self.mesh.face_halfedge[f as usize])
-            .map(|h| self.mesh.origin[h as usize])
-            .collect();
-        for v in corners {
-            self.put_faces_at(v);
+    /// Looks at a face that is new.
+    pub(super) fn look_at(&mut self, key: FaceKey) {
+        if let Some(f) = self.mesh.face_slot(key) {
+            self.put(f);
         }
     }
 
@@ -170,8 +162,8 @@ impl Run {
                 self.account.resolved.push(ResolvedSliver { sliver, action: done.action, moved });
             }
         }
-        for f in done.born {
-            self.put(f);
+        for key in done.born {
+            self.look_at(key);
         }
         // Those around may be legal now; around a heavy vertex they wait for the next sweep.
         if let Some(v) = done.vertex

@@ -69,8 +69,28 @@ impl Gauge {
         loop_.map(|v| (v, self.at(mesh, v))).collect()
     }
 
+    /// Whether a face is a triangle that is far from being a sliver, in few steps.
+    fn is_plainly_fine(&self, mesh: &Mesh, f: u32) -> bool {
+        let h = mesh.face_halfedge[f as usize];
+        let (n, p) = (mesh.next[h as usize], mesh.prev[h as usize]);
+        if mesh.next[n as usize] != p {
+            return false;
+        }
+        let [a, b, c] = [h, n, p].map(|h| self.at(mesh, mesh.origin[h as usize]));
+        let (u, v) = (b - a, c - a);
+        let edges = [u, v, c - b].map(DVec3::length_squared);
+        let longest = edges[0].max(edges[1]).max(edges[2]);
+        let shortest = edges[0].min(edges[1]).min(edges[2]);
+        let square = self.tolerance * self.tolerance * 1.001;
+        // Not where squares are near the end of f64.
+        longest > 1e-100 && shortest > square && u.cross(v).length_squared() > square * longest
+    }
+
     /// The face as a sliver, if it is one.
     pub(super) fn sliver(&mut self, mesh: &Mesh, f: u32) -> Option<Sliver> {
+        if self.is_plainly_fine(mesh, f) {
+            return None;
+        }
         let corners = self.corners(mesh, f);
         let look = self.look(&corners);
         look.fault.map(|(kind, _)| Sliver {

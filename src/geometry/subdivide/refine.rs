@@ -2,7 +2,8 @@
 //! of the coarser.
 
 use super::dense::Dense;
-use super::{Meter, Scheme, SubdivideError, masks};
+use super::{Meter, Scheme, SubdivideError, carry, masks};
+use crate::column::Columns;
 use crate::matching::NONE;
 use crate::report::{Maps, Relation};
 use crate::{Mesh, Polygons};
@@ -73,6 +74,7 @@ impl Refined {
         &mut self,
         scheme: Scheme,
         is_last: bool,
+        columns: &mut Columns,
         meter: &mut Meter<'_, '_>,
     ) -> Result<(), SubdivideError> {
         let dense = &self.dense;
@@ -83,6 +85,10 @@ impl Refined {
             _ => masks::midpoint(dense),
         };
         meter.advance(1, 4)?;
+        if !columns.is_empty() {
+            carry::by_edges(columns, dense, &positions, &has_center);
+            meter.advance(1, 3)?;
+        }
         let faces = dense.polygons.len();
         let centers = positions.len() - dense.positions.len() - dense.edges;
         let mut births = mem::take(&mut self.vertex_birth);

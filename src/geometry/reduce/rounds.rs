@@ -1,0 +1,203 @@
+//! A large mesh in parts: each lies together in memory, and each thread has parts of its own.
+//!
+//! The parts depend on the mesh alone, and so does the result. A vertex with a neighbour in another part waits until the
+//! parts have come together. All parts go on to the next doubling of the cost together, so that the order of collapses is
+//! that of their costs but for what lies within a factor of two.
+
+use super::attempt::Guards;
+use super::copy::Copy;
+use super::part::Part;
+use super::queue::{DOUBLING, PARKED};
+use super::run::{Account, Run, Step};
+use crate::matching::NONE;
+use crate::{Cancelled, Control};
+
+/// A part has this many vertices or up to twice as many.
+const PART: usize = 1 << 16;
+
+/// What came of it.
+pub(super) struct Outcome {
+    pub(super) is_met: bool,
+    pub(super) account: Account,
+    pub(super) log: Option<Vec<Step>>,
+}
+
+struct Job<'a> {
+    part: Part<'a>,
+    run: Run,
+    /// How many faces are to be gone after this round.
+    goal: usize,
+    is_met: bool,
+}
+
+impl Copy {
+    /// Collapses until `faces` are gone or nothing is left to collapse.
+    pub(super) fn reduce(
+        &mut self,
+        faces: usize,
+        guards: Guards,
+        keep_log: bool,
+        control: &mut Control<'_>,
+    ) -> Result<Outcome, Cancelled> {
+        let mut run = Run::new(guards, keep_log);
+        let cuts = self.cuts();
+        let seam = if cuts.len() > 2 { self.seam(&cuts) } else { Vec::new() };
+        let removed = if seam.is_empty() {
+            run.fill(&mut self.whole());
+            0
+        } else {
+            self.reduce_parts(&cuts, faces, seam.len(), &mut run, control)?
+        };
+        let mut whole = self.whole();
+        whole.removed = removed;
+        if !seam.is_empty() {
+            come_together(&mut whole, &mut run, &seam, guards.line_weight);
+        }
+        let is_met = run.reduce(&mut whole, faces, seam.is_empty(), control)?;
+        Ok(Outcome { is_met, account: run.account, log: run.log })
+    }
+
+    /// Where the parts begin and end, by vertex.
+    fn cuts(&self) -> Vec<usize> {
+        let (n, parts) = (self.spots.len(), (self.spots.len() / PART).max(1));
+        (0..=parts).map(|k| (n as u64 * k as u64 / parts as u64) as usize).collect()
+    }
+
+    /// Marks the vertices that wait; none if too many had to.
+    fn seam(&mut self, cuts: &[usize]) -> Vec<u32> {
+        let mut waits: Vec<bool> = self.spots.iter().map(|spot| spot.is_heavy()).collect();
+        let part = |v: u32| cuts.partition_point(|&cut| cut <= v as usize);
+        let mut end = 0;
+        for edge in &self.edges {
+            let [a, b] = edge.ends();
+            // Edges go by their lower vertex.
+            if a.min(b) as usize >= end {
+                end = cuts[part(a.min(b))];
+            }
+            if a.max(b) as usize >= end {
+                (waits[a as usize], waits[b as usize]) = (true, true);
+            }
+        }
+        // On the boundary links beyond the neighbour change.
+        let beside = self.edges.iter().filter(|edge| edge.is_open()).map(|edge| edge.ends());
+        let more: Vec<u32> =
+            beside.filter(|ends| ends.iter().any(|&v| waits[v as usize])).flatten().collect();
+        more.into_iter().for_each(|v| waits[v as usize] = true);
+        let seam: Vec<u32> = (0..).zip(&waits).filter(|w| *w.1).map(|w| w.0).collect();
+        if seam.len() > self.spots.len() / 8 {
+            return Vec::new();
+        }
+        seam.iter().for_each(|&v| self.spots[v as usize].set_seam(true));
+        seam
+    }
+
+    /// Reduces the parts, but for the last few faces. How many are gone.
+    fn reduce_parts(
+        &mut self,
+        cuts: &[usize],
+        faces: usize,
+        seam: usize,
+        run: &mut Run,
+        control: &mut Control<'_>,
+    ) -> Result<usize, Cancelled> {
+        let all = self.faces.iter().flatten().filter(|&&f| f != NONE).count() / 3;
+        // What the seam has to give, and a rest that goes strictly by cost.
+        let goal = (faces as f64 * (0.98 - 3.0 * seam as f64 / all.max(1) as f64)).max(0.0) as usize;
+        let mut jobs: Vec<Job<'_>> = Vec::new();
+        for part in self.parts(cuts) {
+            jobs.push(Job { part, run: run.another(), goal: 0, is_met: false });
+        }
+        each(&mut jobs, |job| job.run.fill(&mut job.part));
+        let mut removed = 0;
+        loop {
+            let Some(start) = jobs.iter_mut().filter_map(|job| job.run.queue.first()).min() else { break };
+            let left = goal.saturating_sub(removed);
+            let count = |jobs: &[Job<'_>], end| jobs.iter().map(|j| j.run.queue.count(end)).sum::<usize>();
+            let mut end = (start / DOUBLING + 1) * DOUBLING;
+            if count(&jobs, end) > left / 4 {
+                // Near the goal in smaller steps.
+                end = end.min(start + (DOUBLING / 16).max(1));
+            }
+            let waiting = count(&jobs, end);
+            if left < 64 || waiting == 0 {
+                break;
+            }
+            for job in &mut jobs {
+                let share = left as u64 * job.run.queue.count(end) as u64 / waiting as u64;
+                job.goal = job.part.removed + (share as usize).saturating_sub(1);
+            }
+            each(&mut jobs, |job| {
+                if job.goal > job.part.removed {
+                    // Without a hook nobody cancels.
+                    let done = job.run.drain(&mut job.part, job.goal, end, &mut Control::none());
+                    job.is_met = done == Ok(true);
+                }
+            });
+            removed = jobs.iter().map(|job| job.part.removed).sum();
+            let share = removed as f64 / faces.min(all).max(1) as f64;
+            control.report("collapse", 0.1 + 0.75 * share.min(1.0))?;
+            if jobs.iter().any(|job| job.is_met) {
+                break;
+            }
+        }
+        jobs.into_iter().for_each(|job| run.add(job.run));
+        Ok(removed)
+    }
+
+    fn parts(&mut self, cuts: &[usize]) -> Vec<Part<'_>> {
+        let mut rest = self.whole();
+        let mut parts = Vec::new();
+        for cut in cuts.windows(2) {
+            let vertices = cut[1] - cut[0];
+            let lower = |e: &super::part::Edge| e.ends()[0].min(e.ends()[1]) as usize;
+            let edges = rest.edges.partition_point(|e| lower(e) < cut[1]);
+            let (part, others) = rest.split(vertices, edges);
+            parts.push(part);
+            rest = others;
+        }
+        parts
+    }
+}
+
+/// Lets the seam take part again.
+fn come_together(whole: &mut Part<'_>, run: &mut Run, seam: &[u32], line_weight: f64) {
+    seam.iter().for_each(|&v| whole.spot_mut(v).set_seam(false));
+    let mut is_seam = vec![false; whole.spots.len()];
+    seam.iter().for_each(|&v| is_seam[v as usize] = true);
+    for e in 0..whole.edges.len() as u32 {
+        let edge = *whole.edge(e);
+        if edge.is_dead() {
+            continue;
+        }
+        for (h, v) in (2 * e..).zip(edge.ends()) {
+            if std::mem::take(&mut is_seam[v as usize]) {
+                whole.sum_again(h, line_weight);
+            }
+        }
+    }
+    seam.iter().for_each(|&v| is_seam[v as usize] = true);
+    for e in 0..whole.edges.len() as u32 {
+        let edge = *whole.edge(e);
+        if edge.is_dead() {
+            continue;
+        }
+        if edge.ends().iter().any(|&v| is_seam[v as usize]) {
+            run.put(whole, e);
+        } else if whole.key(e) != PARKED {
+            run.queue.push(whole.key(e), e);
+        }
+    }
+}
+
+/// Does all jobs, on several threads where the feature `rayon` allows it.
+#[cfg(feature = "rayon")]
+fn each<'a>(jobs: &mut [Job<'a>], work: impl Fn(&mut Job<'a>) + Sync + Send) {
+    use rayon::prelude::*;
+    jobs.par_iter_mut().for_each(work);
+}
+
+/// Does all jobs.
+#[cfg(not(feature = "rayon"))]
+fn each<'a>(jobs: &mut [Job<'a>], work: impl Fn(&mut Job<'a>)) {
+    jobs.iter_mut().for_each(work);
+}
