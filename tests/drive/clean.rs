@@ -93,7 +93,7 @@ pub(crate) fn check(case: &Soup) {
     }
     for v in 0..soup.positions.len() {
         assert_eq!(vertices.new_of(v).is_empty(), !soup.positions[v].is_finite(), "vertex {v}");
-        if !matches!(weld, Weld::Within(_)) {
+        if !matches!(weld, Weld::Within(_) | Weld::Auto) {
             for &n in vertices.new_of(v) {
                 assert_eq!(pool.positions()[n as usize], soup.positions[v], "nothing moves in an exact weld");
             }
@@ -190,7 +190,7 @@ fn attributes(mut soup: PolygonSoup, weld: Weld, pool: &IndexedMesh) {
         for &v in face {
             let uv = carried.corner_uvs.as_ref().and_then(|uvs| uvs[corner]).expect("each corner has one");
             assert_eq!(uv.x, f64::from(old));
-            if !matches!(weld, Weld::Within(_)) {
+            if !matches!(weld, Weld::Within(_) | Weld::Auto) {
                 assert_eq!(uv.y, place(clean.positions()[v as usize]), "face {f}, vertex {v}");
             }
             if let Some(normal) = carried.corner_normals.as_ref().and_then(|normals| normals[corner])
@@ -206,7 +206,7 @@ fn attributes(mut soup: PolygonSoup, weld: Weld, pool: &IndexedMesh) {
         let normal = carried.vertex_normals.as_ref().map(|n| n[v].x);
         assert!(normal.is_none_or(|n| is_middle(v as u32) || [n as u32 - 1] == maps.vertices.old_of(v)));
         let [x, y, z, _] = carried.vertex_colors.as_ref().expect("one per vertex")[v].map(f64::from);
-        assert!(matches!(weld, Weld::Within(_)) || DVec3::new(x, y, z) == *p);
+        assert!(matches!(weld, Weld::Within(_) | Weld::Auto) || DVec3::new(x, y, z) == *p);
     }
     // To a soup and back.
     let again = PolygonSoup::from(clean.clone());
