@@ -15,7 +15,7 @@ pub(super) fn drop_duplicates(pool: &mut Pool<'_>, matching: &Matching) -> bool 
         gone[face as usize] = true;
         record_face(pool, face, Step::DropDuplicates, Kind::DuplicateFace);
     }
-    pool.report.steps.push(StepSummary::new(Step::DropDuplicates, duplicates.len()));
+    pool.report.add_step(StepSummary::new(Step::DropDuplicates, duplicates.len()));
     if !duplicates.is_empty() {
         pool.remove_faces(&gone);
     }

@@ -86,6 +86,10 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
         && stitch_pool(&mut pool, &matching, reach, control)?
     {
         matching = Matching::new(pool.positions.len(), &pool.polygons);
+        // Faces may have come to lie on others.
+        if drop_duplicates(&mut pool, &matching) {
+            matching = Matching::new(pool.positions.len(), &pool.polygons);
+        }
     }
     control.report("pair faces", 0.6)?;
     let mates = make_manifold(&mut pool, &matching);

@@ -129,15 +129,7 @@ impl Stage {
         let Outcome { value, report, maps } = step;
         let records = report.records.into_iter().map(|r| Record { element: self.names.of(r.element), ..r });
         self.report.records.extend(records);
-        for step in report.steps {
-            match self.report.steps.iter_mut().find(|s| s.step == step.step) {
-                Some(all) => {
-                    all.changed += step.changed;
-                    all.moved = all.moved.max(step.moved);
-                }
-                None => self.report.steps.push(step),
-            }
-        }
+        report.steps.into_iter().for_each(|step| self.report.add_step(step));
         if !(maps.vertices.is_identity() && maps.faces.is_identity()) {
             self.names.follow(&maps, &self.mesh);
             // Each relation starts where the one before ended.
