@@ -326,21 +326,6 @@ fn with_rules(mesh: &mut Mesh, custom: Rule<f64>) -> Rules {
     let on_edges = some().map(|rule| mesh.add_edge_column(-1.0, rule));
     let on_faces = some().map(|rule| mesh.add_face_column(-1.0, rule));
     for v in mesh.vertices().collect::<Vec<_>>() {
-<<<<<<< HEAD
-        on_vertices.iter().for_each(|&c| {
-            mesh.set_value(c, v, mesh.position(v).x).expect("live");
-        });
-    }
-    for e in mesh.edges().collect::<Vec<_>>() {
-        on_edges.iter().for_each(|&c| {
-            mesh.set_value(c, e, 1.0).expect("live");
-        });
-    }
-    for f in mesh.faces().collect::<Vec<_>>() {
-        on_faces.iter().for_each(|&c| {
-            mesh.set_value(c, f, 1.0).expect("live");
-        });
-=======
         for &c in &on_vertices {
             mesh.set_value(c, v, mesh.position(v).x).expect("live");
         }
@@ -354,7 +339,6 @@ fn with_rules(mesh: &mut Mesh, custom: Rule<f64>) -> Rules {
         for &c in &on_faces {
             mesh.set_value(c, f, 1.0).expect("live");
         }
->>>>>>> main
     }
     Rules { on_vertices, on_edges, on_faces }
 }
