@@ -117,6 +117,8 @@ named! {
         Cap = "cap",
         /// A larger face without height, or that would be cut into triangles of which one has none; cut and resolved.
         FlatFace = "flat_face",
+        /// A face with height that went with slivers beside it; its neighbours cover its place.
+        AbsorbedFace = "absorbed_face",
         /// A face without height that could not be resolved; left.
         LeftSliver = "left_sliver",
         /// A part with fewer faces than the caller asked for; its faces were dropped.
@@ -285,7 +287,7 @@ impl Record {
 pub struct StepSummary {
     /// The step.
     pub step: Step,
-    /// How many elements it changed. An exact weld counts its merges here and keeps no record of them: it moves
+    /// How many elements it changed; or found, if it only looks. An exact weld counts its merges here and keeps no record of them: it moves
     /// nothing, and [`Maps`] names every one.
     pub changed: usize,
     /// The tolerance it used, in the mesh's units, if it has one.
@@ -323,6 +325,17 @@ impl Report {
     /// Whether there is no record.
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
+    }
+
+    /// Adds what a step did to what the same step did before.
+    pub(crate) fn add_step(&mut self, step: StepSummary) {
+        match self.steps.iter_mut().find(|s| s.step == step.step) {
+            Some(all) => {
+                all.changed += step.changed;
+                all.moved = all.moved.max(step.moved);
+            }
+            None => self.steps.push(step),
+        }
     }
 
     /// The number of records of one kind. Linear in the records.

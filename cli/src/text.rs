@@ -95,6 +95,7 @@ fn described(kind: Kind) -> (&'static str, &'static str) {
         Kind::Needle => ("face", "with an edge of no length, collapsed"),
         Kind::Cap => ("face", "without height, merged into its neighbour"),
         Kind::FlatFace => ("face", "without height, cut and resolved"),
+        Kind::AbsorbedFace => ("face", "taken over by its neighbours"),
         Kind::LeftSliver => ("face", "without height that could not be resolved, left"),
         Kind::Debris => ("face", "of small parts, dropped"),
         Kind::FilledHole => ("hole", "filled"),

@@ -15,7 +15,7 @@ pub(super) fn drop_duplicates(pool: &mut Pool<'_>, matching: &Matching) -> bool 
         gone[face as usize] = true;
         record_face(pool, face, Step::DropDuplicates, Kind::DuplicateFace);
     }
-    pool.report.steps.push(StepSummary::new(Step::DropDuplicates, duplicates.len()));
+    pool.report.add_step(StepSummary::new(Step::DropDuplicates, duplicates.len()));
     if !duplicates.is_empty() {
         pool.remove_faces(&gone);
     }
@@ -38,14 +38,13 @@ pub(super) fn make_manifold(pool: &mut Pool<'_>, matching: &Matching) -> Vec<u32
     let mut mates = matching.mates();
     let mut flipped = vec![false; pool.polygons.len()];
     let mut unify = |pool: &mut Pool<'_>, mates: &mut Vec<u32>| {
-        let face_of = FaceOf::new(&pool.polygons);
-        let found = orient(&pool.polygons, &face_of, mates);
+        let found = orient(&pool.polygons, &FaceOf::new(&pool.polygons), mates);
         for &c in &found.conflicts {
-            pool.cut.push(face_of.face(c as usize));
             let m = std::mem::replace(&mut mates[c as usize], NONE);
             mates[m as usize] = NONE;
         }
         let cut: Vec<[u32; 2]> = found.conflicts.iter().map(|&c| edge_of(pool, c as usize)).collect();
+        pool.cut.extend(cut.as_flattened());
         flip_faces(&mut pool.polygons, Some(mates), &found.flip);
         flip_sources(pool, &found.flip);
         flipped.iter_mut().zip(&found.flip).for_each(|(all, &now)| *all ^= now);

@@ -3,7 +3,8 @@
 //! [`clean`] runs the whole pipeline; [`index`] runs the part of it that makes a valid vertex pool, and [`inspect`]
 //! tells what state a soup is in without changing it. How faces meet is decided on the indexed form, before half-edges
 //! exist; what makes a solid of a mesh are steps on the mesh, each of which can be called on its own:
-//! [`drop_fins`], [`resolve_slivers`], [`drop_debris`], [`fill_holes`], [`drop_isolated`], [`turn_outward`].
+//! [`drop_fins`], [`resolve_slivers`], [`drop_debris`], [`fill_holes`], [`drop_isolated`], [`turn_outward`],
+//! [`find_intersections`].
 
 mod account;
 mod carry;
@@ -11,6 +12,7 @@ mod drop;
 mod facts;
 mod fill;
 mod fins;
+mod intersections;
 mod manifold;
 mod near;
 mod open;
@@ -32,6 +34,7 @@ pub use drop::{drop_debris, drop_isolated};
 pub use facts::{Facts, inspect, inspect_with};
 pub use fill::fill_holes;
 pub use fins::drop_fins;
+pub use intersections::find_intersections;
 pub use outward::turn_outward;
 pub use slivers::resolve_slivers;
 pub use stitch::stitch;

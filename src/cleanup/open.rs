@@ -1,18 +1,20 @@
 //! Parts that are open: which can be closed, and what is said of those that stay so.
 
+use super::CleanError;
 use super::step::{Areas, Before, Parts, middle, unchanged};
+use super::weld::weld;
+use crate::matching::NONE;
 use crate::report::{Kind, Outcome, Record, Step, StepSummary};
-use crate::{FaceKey, Mesh};
+use crate::{Control, Mesh};
 
 /// How much of a part's area its holes must not reach for it to be a body with holes: from a half on a sphere cut through
 /// the middle to the whole on a flat sheet.
 const SHEET: f64 = 0.75;
 
-/// Why each part cannot become a solid, if so; a closed one can. `cut` are faces of parts that were cut because they
-/// cannot be oriented.
-pub(super) fn hopeless(mesh: &Mesh, parts: &Parts, cut: &[FaceKey]) -> Vec<Option<Kind>> {
+/// Why each part cannot become a solid, if so; a closed one can.
+pub(super) fn hopeless(mesh: &Mesh, parts: &Parts) -> Result<Vec<Option<Kind>>, CleanError> {
+    let twisted = twisted(mesh, parts)?;
     let areas = Areas::of(mesh);
-    let cut = parts_with(mesh, parts, cut);
     let mut holes = vec![0.0; parts.len()];
     let mut seen = vec![false; mesh.edges.slot_count()];
     for first in mesh.boundary_slots() {
@@ -24,24 +26,47 @@ pub(super) fn hopeless(mesh: &Mesh, parts: &Parts, cut: &[FaceKey]) -> Vec<Optio
     let judge = |part: usize| {
         if parts.is_closed[part] {
             None
-        } else if cut[part] {
+        } else if twisted[part] {
             Some(Kind::NotOrientable)
         } else {
             (holes[part] > SHEET * areas.scaled(&parts.faces[part])).then_some(Kind::OpenSheet)
         }
     };
-    (0..parts.len()).map(judge).collect()
+    Ok((0..parts.len()).map(judge).collect())
+}
+
+/// Whether two boundary edges of a part lie at one place and run the same way: what a cut leaves of a surface that cannot
+/// be oriented.
+fn twisted(mesh: &Mesh, parts: &Parts) -> Result<Vec<bool>, CleanError> {
+    let rim: Vec<u32> = mesh.boundary_slots().collect();
+    let at = |h: u32| mesh.positions[mesh.origin[h as usize] as usize];
+    // A vertex has one boundary half-edge from it and one to it.
+    let positions: Vec<_> = rim.iter().map(|&h| at(h)).collect();
+    let places = weld(&positions, Some(0.0), &mut Control::none())?;
+    let mut place = vec![NONE; mesh.vertices.slot_count()];
+    rim.iter().zip(&places).for_each(|(&h, &p)| place[mesh.origin[h as usize] as usize] = p);
+    let mut runs: Vec<[u32; 3]> = rim
+        .iter()
+        .map(|&h| {
+            let [from, to] = [h, h ^ 1].map(|h| place[mesh.origin[h as usize] as usize]);
+            [from, to, parts.of[mesh.face[h as usize ^ 1] as usize]]
+        })
+        .collect();
+    runs.sort_unstable();
+    let mut twisted = vec![false; parts.len()];
+    runs.windows(2).filter(|r| r[0] == r[1]).for_each(|r| twisted[r[0][2] as usize] = true);
+    Ok(twisted)
 }
 
 /// Names the parts that are still open, each by its first face.
-pub(super) fn name_open(mesh: &Mesh, cut: &[FaceKey]) -> Outcome<usize> {
+pub(super) fn name_open(mesh: &Mesh) -> Result<Outcome<usize>, CleanError> {
     let parts = Parts::of(mesh);
     let step = Step::FindOpenParts;
     if parts.open().next().is_none() {
-        return unchanged(mesh, 0, step);
+        return Ok(unchanged(mesh, 0, step));
     }
     let (before, areas) = (Before::of(mesh), Areas::of(mesh));
-    let why = hopeless(mesh, &parts, cut);
+    let why = hopeless(mesh, &parts)?;
     let record = |part: usize| {
         let faces = &parts.faces[part];
         let kind = why[part].unwrap_or(Kind::OpenPart);
@@ -50,17 +75,7 @@ pub(super) fn name_open(mesh: &Mesh, cut: &[FaceKey]) -> Outcome<usize> {
     };
     let records: Vec<Record> = parts.open().map(record).collect();
     let mut outcome = unchanged(mesh, records.len(), step);
-    outcome.report.steps = vec![StepSummary::new(step, 0)];
+    outcome.report.steps = vec![StepSummary::new(step, outcome.value)];
     outcome.report.records = records;
-    outcome
-}
-
-/// Which parts have one of some faces; those that are gone do not count.
-fn parts_with(mesh: &Mesh, parts: &Parts, faces: &[FaceKey]) -> Vec<bool> {
-    let mut of_part = vec![false; parts.len()];
-    faces
-        .iter()
-        .filter_map(|&f| mesh.face_slot(f))
-        .for_each(|f| of_part[parts.of[f as usize] as usize] = true);
-    of_part
+    Ok(outcome)
 }

@@ -30,8 +30,6 @@ struct Built {
     report: Report,
     maps: Maps,
     names: Names,
-    /// Faces at edges that were cut.
-    cut: Vec<u32>,
     tolerance: Option<f64>,
     sources: Sources,
 }
@@ -41,7 +39,7 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
     let is_solid = profile == Profile::Solid;
     let pool = Pool::new(soup, weld, &mut control.part(0.0, if is_solid { 0.6 } else { 1.0 }))?;
     let built = build(pool, profile, &mut control.part(0.0, if is_solid { 0.6 } else { 1.0 }))?;
-    let Built { indexed, mesh, carried, report, maps, names, cut, tolerance, sources } = built;
+    let Built { indexed, mesh, carried, report, maps, names, tolerance, sources } = built;
     let report = Report { not_carried: carried.not_carried(), lost_values: carried.lost_values(), ..report };
     if !is_solid && debris.is_none() {
         return Ok(Cleaned { indexed: Some(indexed), mesh, report, maps, sources });
@@ -49,7 +47,7 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
     drop(indexed);
     let mut stage = Stage { mesh, report, maps, names };
     if is_solid {
-        solidify(&mut stage, &cut, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
+        solidify(&mut stage, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
     } else if let Some(fewer_than) = debris {
         stage.drop_debris(fewer_than);
     }
@@ -74,8 +72,7 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
             let sources = pool.sources();
             let (report, maps) = pool.account(indexed.positions());
             let names = names(&mut pool);
-            let cut = Vec::new();
-            return Ok(Built { indexed, mesh, carried, report, maps, names, cut, tolerance, sources });
+            return Ok(Built { indexed, mesh, carried, report, maps, names, tolerance, sources });
         }
         pool.take_back(indexed);
     }
@@ -89,6 +86,10 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
         && stitch_pool(&mut pool, &matching, reach, control)?
     {
         matching = Matching::new(pool.positions.len(), &pool.polygons);
+        // Faces may have come to lie on others.
+        if drop_duplicates(&mut pool, &matching) {
+            matching = Matching::new(pool.positions.len(), &pool.polygons);
+        }
     }
     control.report("pair faces", 0.6)?;
     let mates = make_manifold(&mut pool, &matching);
@@ -105,6 +106,6 @@ fn build(mut pool: Pool<'_>, profile: Profile, control: &mut Control<'_>) -> Res
     let indexed = pool.lend(std::mem::take(&mut carried.attributes));
     let mesh = Mesh::build(&indexed).map_err(CleanError::Bug)?;
     let sources = pool.sources();
-    let (names, cut) = (names(&mut pool), std::mem::take(&mut pool.cut));
-    Ok(Built { indexed, mesh, carried, report: pool.report, maps, names, cut, tolerance, sources })
+    let names = names(&mut pool);
+    Ok(Built { indexed, mesh, carried, report: pool.report, maps, names, tolerance, sources })
 }

@@ -31,7 +31,7 @@ pub(super) struct Pool<'s> {
     pub(super) flipped: Vec<bool>,
     /// The last vertices are in the middle between these: edges that were parted.
     pub(super) parted: Vec<[u32; 2]>,
-    /// Faces at edges that were cut because the surface cannot be oriented.
+    /// The ends of edges that were cut because the surface cannot be oriented.
     pub(super) cut: Vec<u32>,
     /// The corners at those vertices, ascending.
     pub(super) middles: Vec<u32>,

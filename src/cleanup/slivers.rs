@@ -1,8 +1,10 @@
 //! Slivers resolved, with an account.
 
-use super::step::{Before, unchanged};
-use crate::report::{Kind, Outcome, Record, Report, Step, StepSummary};
+use super::step::{Before, middle, unchanged};
+use crate::report::{Element, Kind, Outcome, Record, Report, Step, StepSummary};
 use crate::{Lineage, Mesh, Sliver, SliverAccount, SliverError, SliverKind, SliverOptions};
+use glam::DVec3;
+use std::collections::BTreeSet;
 
 /// Resolves faces without height: [`Mesh::resolve_slivers`] with an account. A record for each that was found and for each
 /// that is left, in the numbers of the mesh before; maps tell what became of the faces and vertices.
@@ -34,6 +36,7 @@ pub fn resolve_slivers(
         return Ok(outcome);
     }
     let before = Before::of(mesh);
+    let middles: Vec<DVec3> = mesh.faces.in_user_order().into_iter().map(|f| middle(mesh, f)).collect();
     let (account, changes) = mesh.traced(|mesh| mesh.resolve_slivers(options));
     let account = account?;
     let maps = Lineage::of(changes).maps(before.numbering(), &mesh.numbering());
@@ -53,6 +56,12 @@ pub fn resolve_slivers(
         tell(&resolved.sliver, kind);
     }
     account.left.iter().for_each(|left| tell(&left.sliver, Kind::LeftSliver));
+    let named: BTreeSet<Element> = records.iter().map(|r| r.element).collect();
+    let gone = (0..maps.faces.old_len()).filter(|&f| maps.faces.new_of(f).is_empty());
+    let unnamed = gone.map(|f| (f, Element::Face(f as u32))).filter(|(_, element)| !named.contains(element));
+    let absorbed =
+        unnamed.map(|(f, element)| Record::new(step, Kind::AbsorbedFace, element, Some(middles[f])));
+    records.extend(absorbed.collect::<Vec<_>>());
     records.sort_by_key(|r| r.element);
     let summary = StepSummary {
         tolerance: Some(tolerance),

@@ -3,6 +3,7 @@
 use super::drop::{drop_debris, drop_isolated};
 use super::fill::fill_holes_of;
 use super::fins::drop_fins;
+use super::intersections::find_intersections;
 use super::open::{hopeless, name_open};
 use super::outward::turn_outward;
 use super::slivers::resolve_slivers;
@@ -10,7 +11,7 @@ use super::step::Parts;
 use super::{CleanError, Control};
 use crate::matching::NONE;
 use crate::report::{Element, Maps, Outcome, Record, Relation, Report};
-use crate::{Cancelled, FaceKey, FillHolesOptions, Mesh, SliverError, SliverOptions};
+use crate::{Cancelled, FillHolesOptions, Mesh, SelfIntersectionOptions, SliverError, SliverOptions};
 use std::collections::BTreeMap;
 
 /// By what element of the soup a record names one of the mesh.
@@ -33,32 +34,32 @@ pub(super) struct Stage {
 /// How often the steps that change faces are run.
 const MOST_ROUNDS: i32 = 8;
 
-/// Runs the steps that make a solid. `cut` are the faces at edges that were cut because they cannot be oriented.
+/// How many pairs of faces that pass through each other are listed.
+const MOST_LISTED: usize = 10_000;
+
+/// Runs the steps that make a solid.
 pub(super) fn solidify(
     stage: &mut Stage,
-    cut: &[u32],
     tolerance: f64,
     debris: Option<usize>,
     control: &mut Control<'_>,
 ) -> Result<(), CleanError> {
-    let order = stage.mesh.faces.in_user_order();
-    let cut: Vec<FaceKey> = cut.iter().map(|&f| stage.mesh.faces.key(order[f as usize])).collect();
-    drop(order);
-
     // What one step does may leave work for one before it; seldom, and hardly ever twice.
     for round in 0..MOST_ROUNDS {
         let share = 1.0 - 0.5f64.powi(round);
-        let is_changed =
-            stage.round(&cut, tolerance, debris, &mut control.part(0.8 * share, 0.4 + 0.4 * share))?;
+        let is_changed = stage.round(tolerance, debris, &mut control.part(0.8 * share, 0.4 + 0.4 * share))?;
         if !is_changed {
             break;
         }
     }
     control.report("turn outward", 0.8)?;
-    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.95))?;
+    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.85))?;
     stage.join(turned);
-    control.report("find open parts", 0.95)?;
-    let open = name_open(&stage.mesh, &cut);
+    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, control: control.part(0.85, 0.97) };
+    let found = find_intersections(&stage.mesh, options)?;
+    stage.join(found);
+    control.report("find open parts", 0.97)?;
+    let open = name_open(&stage.mesh)?;
     stage.join(open);
     stage.report.records.sort_by_key(|r| r.step);
     Ok(())
@@ -68,7 +69,6 @@ impl Stage {
     /// Runs the steps that change faces, in order; whether a step did that may leave work for another.
     fn round(
         &mut self,
-        cut: &[FaceKey],
         tolerance: f64,
         debris: Option<usize>,
         control: &mut Control<'_>,
@@ -81,7 +81,7 @@ impl Stage {
             self.drop_debris(fewer_than);
         }
         if !self.mesh.is_closed() {
-            is_changed |= self.fill_holes(cut, control.part(0.4, 0.9))?;
+            is_changed |= self.fill_holes(control.part(0.4, 0.9))?;
         }
         control.report("drop isolated vertices", 0.9)?;
         let dropped = drop_isolated(&mut self.mesh);
@@ -105,10 +105,10 @@ impl Stage {
     }
 
     /// Fills the holes of parts that can become solids.
-    fn fill_holes(&mut self, cut: &[FaceKey], control: Control<'_>) -> Result<bool, CleanError> {
+    fn fill_holes(&mut self, control: Control<'_>) -> Result<bool, CleanError> {
         let mesh = &mut self.mesh;
         let parts = Parts::of(mesh);
-        let hopeless = hopeless(mesh, &parts, cut);
+        let hopeless = hopeless(mesh, &parts)?;
         let triangles =
             mesh.faces.live().filter(|&f| mesh.is_triangle(mesh.face_halfedge[f as usize])).count();
         let polygon_tolerance = (2 * triangles < mesh.face_count()).then(|| mesh.propose_sliver_tolerance());
@@ -129,15 +129,7 @@ impl Stage {
         let Outcome { value, report, maps } = step;
         let records = report.records.into_iter().map(|r| Record { element: self.names.of(r.element), ..r });
         self.report.records.extend(records);
-        for step in report.steps {
-            match self.report.steps.iter_mut().find(|s| s.step == step.step) {
-                Some(all) => {
-                    all.changed += step.changed;
-                    all.moved = all.moved.max(step.moved);
-                }
-                None => self.report.steps.push(step),
-            }
-        }
+        report.steps.into_iter().for_each(|step| self.report.add_step(step));
         if !(maps.vertices.is_identity() && maps.faces.is_identity()) {
             self.names.follow(&maps, &self.mesh);
             // Each relation starts where the one before ended.

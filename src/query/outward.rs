@@ -351,21 +351,24 @@ impl Tally {
     }
 }
 
-/// Six times the volume of a closed part, about its first corner; scaled, so that only the sign means anything.
+/// Six times the volume of a closed part, about its first corner; scaled, so that only the sign means anything. 0 if it is
+/// no more than what rounding may make of a flat part.
 fn signed_volume(own: &[u32], places: impl Fn(u32) -> [DVec3; 3] + Copy) -> f64 {
     let Some(&first) = own.first() else { return 0.0 };
     let origin = places(first)[0] * 0.5;
     let local = |p: DVec3| p * 0.5 - origin;
     let scale = unit_scale(own.iter().flat_map(|&t| places(t)).map(local));
-    let (mut sum, mut lost) = (0.0, 0.0);
+    let (mut sum, mut lost, mut size) = (0.0, 0.0, 0.0);
     for &t in own {
         let [a, b, c] = places(t).map(|p| local(p) * scale);
         let (add, before) = (a.cross(b).dot(c), sum);
+        size += a.length() * b.length() * c.length();
         // Neumaier's compensated sum.
         sum += add;
         lost += if f64::abs(before) >= f64::abs(add) { (before - sum) + add } else { (add - sum) + before };
     }
-    sum + lost
+    let volume = sum + lost;
+    if volume.abs() > 8.0 * f64::EPSILON * size { volume } else { 0.0 }
 }
 
 /// The mean winding number of a part on its own surface, weighted by area: a half where it closes around the inside, minus

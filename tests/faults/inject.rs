@@ -41,9 +41,10 @@ impl Faulty {
         self.noise.below(n as u32) as usize
     }
 
-    /// How many faults that change a sound face may be put in, if 98 of 100 faces are to be kept.
+    /// How many caps, or T-junctions, may be put in if 98 of 100 intact faces are to be kept when both come together: each
+    /// makes a corner in a sound face.
     fn few(&self) -> usize {
-        (self.intact.len() / 100).clamp(1, 8)
+        (self.intact.len() / 200).clamp(1, 8)
     }
 
     fn add(&mut self, point: DVec3) -> u32 {
