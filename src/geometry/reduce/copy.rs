@@ -119,8 +119,8 @@ impl Copy {
             (first[ends[0] as usize], first[ends[1] as usize]) = (2 * i, 2 * i + 1);
         }
         let whole = self.whole();
-        let fans = first.iter().map(|&h| whole.fan_around(h, line_weight)).collect();
-        let origins: Vec<Planes> = first.iter().map(|&h| whole.faces_around(h)).collect();
+        let (fans, origins): (Vec<Planes>, Vec<Planes>) =
+            first.iter().map(|&h| whole.planes_around(h, line_weight)).unzip();
         self.fans = fans;
         if has_bound {
             self.memory = origins.iter().map(|&planes| planes.into()).collect();

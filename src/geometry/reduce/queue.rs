@@ -35,27 +35,36 @@ impl Queue {
         self.buckets[bucket as usize].push(edge);
     }
 
-    /// The next entry and its bucket: out of date if the edge has another bucket by now.
+    /// Goes on to the next bucket before `end` that has entries, if the one before is empty; false if there is none.
+    /// Entries that `is_due` says not to belong there any more are dropped.
     #[inline]
-    pub(super) fn pop(&mut self, end: usize) -> Option<(u32, u16)> {
+    pub(super) fn go_on(&mut self, end: usize, is_due: impl Fn(u32, u16) -> bool) -> bool {
         while self.done == self.list.len() {
-            if self.at >= end {
-                return None;
-            }
-            while self.buckets[self.at].is_empty() {
-                if self.at + 1 >= end.min(self.buckets.len()) {
-                    return None;
-                }
-                self.buckets[self.at] = Vec::new();
+            let end = end.min(self.buckets.len());
+            while self.at < end && self.buckets[self.at].is_empty() {
                 self.at += 1;
+            }
+            if self.at >= end {
+                // What is put from here on must find a bucket.
+                self.at = self.at.min(self.buckets.len() - 1);
+                return false;
             }
             self.list.clear();
             self.done = 0;
-            std::mem::swap(&mut self.list, &mut self.buckets[self.at]);
+            let bucket = self.at as u16;
+            let entries = std::mem::take(&mut self.buckets[self.at]);
+            self.list.extend(entries.into_iter().filter(|&e| is_due(e, bucket)));
             self.list.sort_unstable();
         }
-        self.done += 1;
-        Some((self.list[self.done - 1], self.at as u16))
+        true
+    }
+
+    /// The next entry, and its bucket: out of date if the edge has another by now.
+    #[inline]
+    pub(super) fn pop(&mut self) -> Option<(u32, u16)> {
+        let next = self.list.get(self.done).map(|&e| (e, self.at as u16));
+        self.done += usize::from(next.is_some());
+        next
     }
 
     /// What comes next, as far as it is in order already.
@@ -106,8 +115,11 @@ mod tests {
             queue.push(queue.bucket(cost), edge);
         }
         assert_eq!((queue.first(), queue.count(usize::MAX)), (Some(0), 7));
-        let order: Vec<u32> = std::iter::from_fn(|| queue.pop(usize::MAX)).map(|p| p.0).collect();
-        assert_eq!(order, [1, 3, 6, 4, 2, 0, 5]);
+        let mut order = Vec::new();
+        while queue.go_on(usize::MAX, |e, _| e != 6) {
+            order.extend(queue.pop().map(|p| p.0));
+        }
+        assert_eq!(order, [1, 3, 4, 2, 0, 5]);
         assert_eq!(queue.bucket(0.0), queue.bucket(f64::INFINITY), "no way back");
         queue.rewind();
         assert_eq!(queue.bucket(0.0), 0);

@@ -6,6 +6,9 @@ use super::queue::{PARKED, Queue};
 use super::{Refusal, Refusals};
 use crate::{Cancelled, Control};
 
+/// So many edges are looked up ahead.
+const BATCH: usize = 32;
+
 /// A reduction under way.
 pub(super) struct Run {
     pub(super) queue: Queue,
@@ -95,6 +98,11 @@ impl Run {
             Ok(candidate) => self.queue.bucket(candidate.cost),
             Err(refusal) => self.refuse(refusal),
         };
+        self.move_to(part, e, bucket);
+    }
+
+    #[inline]
+    fn move_to(&mut self, part: &mut Part<'_>, e: u32, bucket: u16) {
         let key = part.key_mut(e);
         if *key != bucket {
             *key = bucket;
@@ -122,10 +130,13 @@ impl Run {
         let total = faces.min(part.edges.len()).max(1);
         let mut taken = 0u32;
         while part.removed < faces {
-            if self.queue.is_at_batch(32) {
-                touch(part, self.queue.ahead(32), self.queue.at());
+            if !self.queue.go_on(end, |e, bucket| part.key(e) == bucket) {
+                return Ok(false);
             }
-            let Some((e, bucket)) = self.queue.pop(end) else { return Ok(false) };
+            if self.queue.is_at_batch(BATCH) {
+                touch(part, self.queue.ahead(BATCH), self.queue.at());
+            }
+            let Some((e, bucket)) = self.queue.pop() else { return Ok(false) };
             taken += 1;
             if taken.is_multiple_of(1 << 15) {
                 let share = (part.removed as f64 / total as f64).min(1.0);
@@ -137,7 +148,7 @@ impl Run {
             let candidate = match part.candidate(e) {
                 // It has become dearer since: the neighbours' faces have moved.
                 Ok(candidate) if self.queue.bucket(candidate.cost) > bucket => {
-                    self.put(part, e);
+                    self.move_to(part, e, self.queue.bucket(candidate.cost));
                     continue;
                 }
                 other => other,
@@ -203,26 +214,29 @@ impl std::ops::AddAssign for Refusals {
     }
 }
 
-/// Brings what the next collapses will look at into the cache: loads that do not wait for one another.
-#[inline]
+/// Brings what the next collapses will look at into the cache: walks around all their ends at once, so that no load waits
+/// for more than the one before on the same walk.
 fn touch(part: &Part<'_>, edges: &[u32], bucket: u16) {
+    let mut walks = [(0, 0); 2 * BATCH];
+    let mut count = 0;
+    for &e in edges.iter().take(BATCH).filter(|&&e| part.key(e) == bucket) {
+        for h in [2 * e, 2 * e + 1] {
+            walks[count] = (h, h);
+            count += 1;
+        }
+    }
     let mut sum = 0u64;
-    for &e in edges {
-        if part.key(e) != bucket {
-            continue;
+    for _ in 0..12 {
+        let mut left = 0;
+        for i in 0..count {
+            let (first, h) = walks[i];
+            let (v, after) = part.around(h);
+            sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
+            sum = sum.wrapping_add(part.fan(v).weight().to_bits());
+            walks[left] = (first, after);
+            left += usize::from(after != first);
         }
-        for first in [2 * e, 2 * e + 1] {
-            let mut h = first;
-            for _ in 0..12 {
-                let (v, after) = part.around(h);
-                sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
-                sum = sum.wrapping_add(part.fan(v).weight().to_bits());
-                h = after;
-                if h == first {
-                    break;
-                }
-            }
-        }
+        count = left;
     }
     std::hint::black_box(sum);
 }
