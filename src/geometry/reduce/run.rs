@@ -2,16 +2,21 @@
 
 use super::attempt::{Guards, Scratch};
 use super::part::Part;
-use super::queue::{PARKED, Queue};
+use super::queue::{DOUBLING, PARKED, Queue};
 use super::{Refusal, Refusals};
 use crate::{Cancelled, Control};
 
-/// So many edges are looked up ahead.
-const BATCH: usize = 32;
+/// The edges of a cell, whose records and those of their vertices fit into the cache next to a core.
+const CELL: u32 = 1 << 14;
+/// Up to so many cells strictly go by cost.
+const FEW: usize = 12;
+/// How often one in so many faces is removed, progress is told.
+const REPORTS: usize = 64;
 
 /// A reduction under way.
 pub(super) struct Run {
-    pub(super) queue: Queue,
+    /// By cell.
+    queues: Vec<Queue>,
     scratch: Scratch,
     guards: Guards,
     pub(super) account: Account,
@@ -38,14 +43,16 @@ pub(super) struct Account {
 }
 
 impl Run {
-    pub(super) fn new(guards: Guards, keep_log: bool) -> Self {
-        let log = keep_log.then(Vec::new);
-        Self { queue: Queue::new(), scratch: Scratch::default(), guards, account: Account::default(), log }
-    }
-
-    /// Of the same kind, with nothing done.
-    pub(super) fn another(&self) -> Self {
-        Self::new(self.guards, self.log.is_some())
+    /// For a part of so many edges.
+    pub(super) fn new(edges: usize, guards: Guards, keep_log: bool) -> Self {
+        let cells = (edges as u64).div_ceil(CELL.into()).max(1);
+        Self {
+            queues: (0..cells).map(|_| Queue::new()).collect(),
+            scratch: Scratch::default(),
+            guards,
+            account: Account::default(),
+            log: keep_log.then(Vec::new),
+        }
     }
 
     /// Counts what another has done elsewhere before.
@@ -67,7 +74,7 @@ impl Run {
     ) -> Result<bool, Cancelled> {
         let mut before = is_full.then_some(self.account.collapses);
         loop {
-            if self.drain(part, faces, usize::MAX, control)? {
+            if self.empty(part, faces, control)? {
                 return Ok(true);
             }
             // What was refused may have become legal through changes further away: only a sweep in which nothing
@@ -76,9 +83,49 @@ impl Run {
                 return Ok(false);
             }
             before = Some(self.account.collapses);
-            self.queue.rewind();
+            self.queues.iter_mut().for_each(Queue::rewind);
             self.account.is_bounded = false;
             self.fill(part);
+        }
+    }
+
+    /// Collapses until `faces` are gone or the queue is empty. Whether they are gone.
+    fn empty(&mut self, part: &mut Part<'_>, faces: usize, control: &mut Control<'_>) -> Result<bool, Cancelled> {
+        let total = faces.min(part.edges.len()).max(1);
+        let mut told = part.removed;
+        while part.removed < faces {
+            let Some(start) = self.first(part) else { return Ok(false) };
+            let (left, all) = (faces - part.removed, (start / DOUBLING + 1) * DOUBLING);
+            let is_far = self.queues.len() > FEW && self.count(all) < left / 4;
+            self.drain(part, left, if is_far { all } else { start + 1 });
+            if part.removed - told > total / REPORTS {
+                told = part.removed;
+                control.report("collapse", 0.1 + 0.75 * (told as f64 / total as f64).min(1.0))?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// The first bucket that has entries.
+    pub(super) fn first(&mut self, part: &Part<'_>) -> Option<usize> {
+        self.queues.iter_mut().filter_map(|queue| queue.first(|e| part.key(e))).min()
+    }
+
+    /// How many entries there are before `end`, which must be within the factor of two of the first.
+    pub(super) fn count(&self, end: usize) -> usize {
+        self.queues.iter().map(|queue| queue.count(end)).sum()
+    }
+
+    #[inline]
+    fn queue(&mut self, part: &Part<'_>, e: u32) -> &mut Queue {
+        &mut self.queues[((e - part.first_edge) / CELL) as usize]
+    }
+
+    /// Puts an edge back into its bucket.
+    pub(super) fn keep(&mut self, part: &Part<'_>, e: u32) {
+        let key = part.key(e);
+        if key != PARKED {
+            self.queue(part, e).push(key, e);
         }
     }
 
@@ -94,21 +141,20 @@ impl Run {
     /// Puts an edge where its cost belongs.
     #[inline]
     pub(super) fn put(&mut self, part: &mut Part<'_>, e: u32) {
-        let bucket = match part.candidate(e) {
-            Ok(candidate) => self.queue.bucket(candidate.cost),
-            Err(refusal) => self.refuse(refusal),
-        };
-        self.move_to(part, e, bucket);
+        match part.candidate(e) {
+            Ok(candidate) => self.move_to(part, e, candidate.cost),
+            Err(refusal) => *part.key_mut(e) = self.refuse(refusal),
+        }
     }
 
     #[inline]
-    fn move_to(&mut self, part: &mut Part<'_>, e: u32, bucket: u16) {
+    fn move_to(&mut self, part: &mut Part<'_>, e: u32, cost: f64) {
+        let queue = self.queue(part, e);
+        let bucket = queue.bucket(cost);
         let key = part.key_mut(e);
         if *key != bucket {
             *key = bucket;
-            if bucket != PARKED {
-                self.queue.push(bucket, e);
-            }
+            queue.push(bucket, e);
         }
     }
 
@@ -119,47 +165,42 @@ impl Run {
         PARKED
     }
 
-    /// Collapses until `faces` are gone or the buckets before `end` are empty. Whether they are gone.
-    pub(super) fn drain(
-        &mut self,
-        part: &mut Part<'_>,
-        faces: usize,
-        end: usize,
-        control: &mut Control<'_>,
-    ) -> Result<bool, Cancelled> {
-        let total = faces.min(part.edges.len()).max(1);
-        let mut taken = 0u32;
-        while part.removed < faces {
-            if !self.queue.go_on(end, |e, bucket| part.key(e) == bucket) {
-                return Ok(false);
-            }
-            if self.queue.is_at_batch(BATCH) {
-                touch(part, self.queue.ahead(BATCH), self.queue.at());
-            }
-            let Some((e, bucket)) = self.queue.pop() else { return Ok(false) };
-            taken += 1;
-            if taken.is_multiple_of(1 << 15) {
-                let share = (part.removed as f64 / total as f64).min(1.0);
-                control.report("collapse", 0.1 + 0.75 * share)?;
-            }
-            if part.key(e) != bucket {
-                continue;
-            }
-            let candidate = match part.candidate(e) {
-                // It has become dearer since: the neighbours' faces have moved.
-                Ok(candidate) if self.queue.bucket(candidate.cost) > bucket => {
-                    self.move_to(part, e, self.queue.bucket(candidate.cost));
-                    continue;
+    /// Empties the buckets before `end`, cell by cell, until about `faces` more are gone: where that is less than there is,
+    /// each cell gives its share.
+    pub(super) fn drain(&mut self, part: &mut Part<'_>, faces: usize, end: usize) {
+        let goal = part.removed + faces;
+        let waiting = self.count(end).max(1);
+        for cell in 0..self.queues.len() {
+            let count = self.queues[cell].count(end);
+            let share = (faces as u64 * count as u64).div_ceil(waiting as u64) as usize;
+            let goal = goal.min(part.removed + share);
+            while part.removed < goal
+                && self.queues[cell].first(|e| part.key(e)).is_some_and(|first| first < end)
+            {
+                if let Some((e, bucket)) = self.queues[cell].pop() {
+                    self.take(part, e, bucket);
                 }
-                other => other,
-            };
-            *part.key_mut(e) = PARKED;
-            match candidate.and_then(|c| part.attempt(e, c, self.guards, &mut self.scratch)) {
-                Err(refusal) => _ = self.refuse(refusal),
-                Ok(halfedge) => self.follow(part, halfedge),
             }
         }
-        Ok(true)
+    }
+
+    #[inline]
+    fn take(&mut self, part: &mut Part<'_>, e: u32, bucket: u16) {
+        if part.key(e) != bucket {
+            return;
+        }
+        let candidate = match part.candidate(e) {
+            // It has become dearer since: the neighbours' faces have moved.
+            Ok(candidate) if self.queue(part, e).bucket(candidate.cost) > bucket => {
+                return self.move_to(part, e, candidate.cost);
+            }
+            other => other,
+        };
+        *part.key_mut(e) = PARKED;
+        match candidate.and_then(|c| part.attempt(e, c, self.guards, &mut self.scratch)) {
+            Err(refusal) => _ = self.refuse(refusal),
+            Ok(halfedge) => self.follow(part, halfedge),
+        }
     }
 
     /// After a collapse, while all of this is at hand.
@@ -212,31 +253,4 @@ impl std::ops::AddAssign for Refusals {
         self.shape += other.shape;
         self.error_bound += other.error_bound;
     }
-}
-
-/// Brings what the next collapses will look at into the cache: walks around all their ends at once, so that no load waits
-/// for more than the one before on the same walk.
-fn touch(part: &Part<'_>, edges: &[u32], bucket: u16) {
-    let mut walks = [(0, 0); 2 * BATCH];
-    let mut count = 0;
-    for &e in edges.iter().take(BATCH).filter(|&&e| part.key(e) == bucket) {
-        for h in [2 * e, 2 * e + 1] {
-            walks[count] = (h, h);
-            count += 1;
-        }
-    }
-    let mut sum = 0u64;
-    for _ in 0..12 {
-        let mut left = 0;
-        for i in 0..count {
-            let (first, h) = walks[i];
-            let (v, after) = part.around(h);
-            sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
-            sum = sum.wrapping_add(part.fan(v).weight().to_bits());
-            walks[left] = (first, after);
-            left += usize::from(after != first);
-        }
-        count = left;
-    }
-    std::hint::black_box(sum);
 }
