@@ -186,8 +186,8 @@ impl Part<'_> {
         // Away from features the planes of the faces that change are exchanged, which is less than to sum up anew.
         let is_plain = candidate.way == Way::Anywhere && goes.is_plain && stays.is_plain;
         let fan = if is_plain {
-            let gone = goes.gone(from).map(plane);
-            let around = goes.exchange(self, Some(gone));
+            let [right, left] = goes.gone(from);
+            let around = goes.exchange(self, Some([plane(right), plane(left)]));
             around + stays.exchange(self, None)
         } else {
             Planes::default()
@@ -226,9 +226,7 @@ impl Part<'_> {
             if self.is_feature(n) && self.is_feature(p) {
                 return Err(Refusal::Feature);
             }
-            let apex = |h: u32| (!self.is_open(h)).then(|| self.origin(self.next(self.next(h))));
-            let beyond = [n, p].map(|h| apex(h ^ 1));
-            if beyond[0].is_some() && beyond[0] == beyond[1] {
+            if !self.is_open(n ^ 1) && !self.is_open(p ^ 1) && self.apex(n ^ 1) == self.apex(p ^ 1) {
                 return Err(Refusal::Topology);
             }
         }

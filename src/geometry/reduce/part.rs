@@ -121,7 +121,7 @@ impl Edge {
 
     #[inline]
     pub(super) fn ends(&self) -> [u32; 2] {
-        self.origin.map(|v| v & !TOP)
+        [self.origin[0] & !TOP, self.origin[1] & !TOP]
     }
 
     #[inline]
@@ -261,6 +261,12 @@ impl Part<'_> {
     #[inline]
     pub(super) fn origin(&self, h: u32) -> u32 {
         self.edge(h >> 1).origin[(h & 1) as usize] & !TOP
+    }
+
+    /// The third corner of a triangle.
+    #[inline]
+    pub(super) fn apex(&self, h: u32) -> u32 {
+        self.around(self.next(h)).0
     }
 
     /// The target of a spoke and the spoke after it, clockwise.

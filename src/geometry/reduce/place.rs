@@ -91,7 +91,7 @@ impl Part<'_> {
         if self.spot(a.min(b)).is_seam() || self.spot(a.max(b)).is_seam() {
             return Err(Refusal::Later);
         }
-        let ([from, to], [fan_a, fan_b]) = ([a, b].map(|v| self.spot(v)), [a, b].map(|v| self.fan(v)));
+        let (from, to, fan_a, fan_b) = (self.spot(a), self.spot(b), self.fan(a), self.fan(b));
         let way = way(from, to, edge.is_feature())?;
         let half = (to.position - from.position) * 0.5;
         let middle = from.position + half;

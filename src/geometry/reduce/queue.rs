@@ -87,6 +87,12 @@ impl Queue {
             + self.fine[self.at % DOUBLING..last].iter().map(Vec::len).sum::<usize>()
     }
 
+    /// All entries of the first bucket, when it has just begun.
+    #[inline]
+    pub(super) fn begun(&self) -> Option<&[u32]> {
+        (self.done == 0).then_some(&self.list)
+    }
+
     /// The next entry of the first bucket, and the bucket: out of date if the edge has another by now.
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(u32, u16)> {

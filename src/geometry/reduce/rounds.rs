@@ -13,7 +13,7 @@ use crate::matching::NONE;
 use crate::{Cancelled, Control};
 
 /// A part has this many vertices or up to twice as many.
-const PART: usize = 1 << 17;
+const PART: usize = 1 << 16;
 
 /// What came of it.
 pub(super) struct Outcome {

@@ -28,8 +28,7 @@ pub(super) struct Run {
 #[derive(Clone, Copy)]
 pub(super) struct Step {
     pub(super) halfedge: u32,
-    /// The vertex that is left, and where it was then, in local units; `None` if it was never moved.
-    pub(super) vertex: u32,
+    /// Where the vertex that is left was then, in local units; `None` if it was never moved.
     pub(super) place: Option<glam::DVec3>,
 }
 
@@ -177,6 +176,9 @@ impl Run {
             while part.removed < goal
                 && self.queues[cell].first(|e| part.key(e)).is_some_and(|first| first < end)
             {
+                if let Some(entries) = self.queues[cell].begun() {
+                    touch(part, entries);
+                }
                 if let Some((e, bucket)) = self.queues[cell].pop() {
                     self.take(part, e, bucket);
                 }
@@ -208,9 +210,8 @@ impl Run {
     fn follow(&mut self, part: &mut Part<'_>, halfedge: u32) {
         self.account.collapses += 1;
         if let Some(log) = &mut self.log {
-            let vertex = part.origin(halfedge ^ 1);
-            let target = part.spot(vertex);
-            log.push(Step { halfedge, vertex, place: target.is_moved().then_some(target.position) });
+            let target = part.spot(part.origin(halfedge ^ 1));
+            log.push(Step { halfedge, place: target.is_moved().then_some(target.position) });
         }
         for i in 1..self.scratch.goes.spokes.len() {
             self.put_again(part, self.scratch.goes.spokes[i] >> 1);
@@ -253,4 +254,20 @@ impl std::ops::AddAssign for Refusals {
         self.shape += other.shape;
         self.error_bound += other.error_bound;
     }
+}
+
+/// Brings what the next collapses will look at first into the cache, by loads that do not wait for one another.
+fn touch(part: &Part<'_>, edges: &[u32]) {
+    let mut sum = 0u64;
+    for batch in edges.chunks(32) {
+        let mut ends = [0; 64];
+        for (ends, &e) in ends.chunks_exact_mut(2).zip(batch) {
+            ends.copy_from_slice(&part.edge(e).ends());
+        }
+        for &v in &ends[..2 * batch.len()] {
+            sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
+            sum = sum.wrapping_add(part.fan(v).weight().to_bits());
+        }
+    }
+    std::hint::black_box(sum);
 }
