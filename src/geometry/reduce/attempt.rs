@@ -114,7 +114,7 @@ impl Ring {
     }
 
     /// Exchanges the planes of the faces around this end in the vertices around, and returns those of the new faces.
-    /// Where `far_faces`, the two faces that go are taken out of their third corners too.
+    /// The planes of the faces that are `gone`, right and left, are taken out of their third corners.
     #[inline]
     fn exchange(&self, part: &mut Part<'_>, gone: Option<[Planes; 2]>) -> Planes {
         let (mut fan, mut carried) = (Planes::default(), Planes::default());
@@ -234,6 +234,10 @@ impl Part<'_> {
         let (goes, stays) = (&mut scratch.goes, &mut scratch.stays);
         goes.walk(self, h, middle);
         if self.spot(b).is_heavy() {
+            if !self.is_whole {
+                // Its neighbours' neighbours may be in another part.
+                return Err(Refusal::Valence);
+            }
             stays.spokes.clear();
             return self.check_heavy(h, &goes.spokes[1..], sides);
         }

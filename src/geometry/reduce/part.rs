@@ -163,6 +163,8 @@ pub(super) struct Part<'a> {
     pub(super) faces: &'a mut [[u32; 2]],
     pub(super) first_vertex: u32,
     pub(super) first_edge: u32,
+    /// Whether there are no others.
+    pub(super) is_whole: bool,
     /// How many faces are gone.
     pub(super) removed: usize,
 }
@@ -186,6 +188,7 @@ impl<'a> Part<'a> {
             faces: other_faces,
             first_vertex: first_vertex + vertices as u32,
             first_edge: first_edge + edges as u32,
+            is_whole: false,
             removed: 0,
         };
         (
