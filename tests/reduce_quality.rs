@@ -179,7 +179,8 @@ fn to_segment(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
 fn textures_of_the_corpus_keep_their_charts_and_columns_their_values() {
     let mut done = 0;
     for row in corpus::rows().unwrap_or_default() {
-        if !["cinolib__spot_triangulated", "cinolib__blub_triangulated"].iter().any(|n| row.path.contains(n)) {
+        if !["cinolib__spot_triangulated", "cinolib__blub_triangulated"].iter().any(|n| row.path.contains(n))
+        {
             continue;
         }
         let soup = row.load().expect("readable");
@@ -193,13 +194,22 @@ fn textures_of_the_corpus_keep_their_charts_and_columns_their_values() {
         let account = mesh.reduce(to(ReduceTarget::Ratio(0.2))).expect("reduces");
         assert_eq!(mesh.validate(), Ok(()));
         let after = lines(&mesh);
-        let off = after.iter().flatten().map(|&p| before.iter().map(|&l| to_segment(p, l)).fold(f64::MAX, f64::min));
+        let off = after
+            .iter()
+            .flatten()
+            .map(|&p| before.iter().map(|&l| to_segment(p, l)).fold(f64::MAX, f64::min));
         let off = off.fold(0.0, f64::max);
         let size = mesh.to_indexed().bounds().map_or(0.0, |b| b.max.distance(b.min));
-        let lag = mesh.vertices().map(|v| (mesh.value(height, v) - mesh.position(v).y).abs()).fold(0.0, f64::max);
+        let lag =
+            mesh.vertices().map(|v| (mesh.value(height, v) - mesh.position(v).y).abs()).fold(0.0, f64::max);
         eprintln!(
             "{}: {} -> {} faces, seam of {had} -> {} edges, {} charts, uv off by {off:.1e}, column by {:.1e}",
-            row.path, account.faces_before, account.faces, seam(&mesh).len(), charts_before, lag / size,
+            row.path,
+            account.faces_before,
+            account.faces,
+            seam(&mesh).len(),
+            charts_before,
+            lag / size,
         );
         assert!(!after.is_empty() && seam(&mesh).len() < had, "{}", row.path);
         assert_eq!(charts(&mesh), charts_before, "{}", row.path);

@@ -70,7 +70,9 @@ impl Part<'_> {
         let mut fan = Planes::default();
         self.each_around(first, |square, double_area, along| match along {
             None => fan = fan + Planes::one(double_area, weigh(0.5 * square.sqrt()) / square),
-            Some(along) => fan = fan + upright(along, double_area, line_weight * weigh(along.length_squared())),
+            Some(along) => {
+                fan = fan + upright(along, double_area, line_weight * weigh(along.length_squared()))
+            }
         });
         fan
     }

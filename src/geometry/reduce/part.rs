@@ -191,10 +191,10 @@ impl<'a> Part<'a> {
             is_whole: false,
             removed: 0,
         };
-        (
-            Part { spots, fans, memory, edges: first, keys, faces, first_vertex, first_edge, removed: 0 },
-            others,
-        )
+        let (edges, is_whole, removed) = (first, false, 0);
+        let part =
+            Part { spots, fans, memory, edges, keys, faces, first_vertex, first_edge, is_whole, removed };
+        (part, others)
     }
 }
 

@@ -58,7 +58,8 @@ impl Queue {
             let octave = self.at / DOUBLING;
             if let Some(i) = (self.at % DOUBLING..DOUBLING).find(|&i| !self.fine[i].is_empty()) {
                 self.at = octave * DOUBLING + i;
-                (self.list, self.fine[i]) = (std::mem::take(&mut self.fine[i]), std::mem::take(&mut self.list));
+                (self.list, self.fine[i]) =
+                    (std::mem::take(&mut self.fine[i]), std::mem::take(&mut self.list));
                 self.fine[i].clear();
                 self.list.retain(|&e| key(e) as usize == self.at);
                 self.list.sort_unstable();
@@ -83,8 +84,7 @@ impl Queue {
             return 0;
         }
         let last = if end / DOUBLING > self.at / DOUBLING { DOUBLING } else { end % DOUBLING };
-        self.list.len() - self.done
-            + self.fine[self.at % DOUBLING..last].iter().map(Vec::len).sum::<usize>()
+        self.list.len() - self.done + self.fine[self.at % DOUBLING..last].iter().map(Vec::len).sum::<usize>()
     }
 
     /// All entries of the first bucket, when it has just begun.

@@ -89,7 +89,12 @@ impl Run {
     }
 
     /// Collapses until `faces` are gone or the queue is empty. Whether they are gone.
-    fn empty(&mut self, part: &mut Part<'_>, faces: usize, control: &mut Control<'_>) -> Result<bool, Cancelled> {
+    fn empty(
+        &mut self,
+        part: &mut Part<'_>,
+        faces: usize,
+        control: &mut Control<'_>,
+    ) -> Result<bool, Cancelled> {
         let total = faces.min(part.edges.len()).max(1);
         let mut told = part.removed;
         while part.removed < faces {
