@@ -9,7 +9,7 @@ mod shapes;
 
 use cpu_time::ThreadTime;
 use meshwright::glam::{DVec3, dvec3};
-use meshwright::{ClosestOptions, Ray};
+use meshwright::{ClosestOptions, Ray, SelfIntersectionOptions};
 use shapes::Noise;
 use std::error::Error;
 use std::hint::black_box;
@@ -54,6 +54,29 @@ fn main() -> Result<(), Box<dyn Error>> {
     let index = mesh.index();
     print("index", start.elapsed().as_secs_f64(), "s");
     print("memory", index.heap_bytes() as f64 / pool.face_count() as f64, "bytes/face");
+
+    let seconds = |op: &str, mesh: &meshwright::Mesh| -> Result<(), Box<dyn Error>> {
+        let index = mesh.index();
+        let mut best = f64::INFINITY;
+        let mut found = 0;
+        for _ in 0..3 {
+            let start = ThreadTime::now();
+            found = index.self_intersections(SelfIntersectionOptions::default())?.count();
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        print(op, best, "s");
+        print(&format!("{op}_found"), found as f64, "pairs");
+        Ok(())
+    };
+    seconds("self_intersections", &mesh)?;
+    // Level ground, where everything lies in one plane; and two bodies through each other.
+    let mut ground = shapes::grid(300);
+    ground.map_positions(|p| dvec3(p.x, p.y, p.x + 2.0 * p.y))?;
+    seconds("self_intersections_level_180k", &shapes::mesh(&ground))?;
+    let body = shapes::icosphere(6);
+    let mut moved = body.clone();
+    moved.map_positions(|p| p + dvec3(0.3, 0.2, 0.1))?;
+    seconds("self_intersections_two_82k", &shapes::mesh(&shapes::both(&body, &moved)))?;
 
     let rate = |op: &str, count: usize, run: &mut dyn FnMut() -> usize| {
         let mut best = f64::INFINITY;

@@ -34,15 +34,23 @@ pub struct Cancelled;
 /// let control = Control::new(&mut hook);
 /// # drop(control);
 /// ```
-#[derive(Default)]
 pub struct Control<'a> {
     hook: Option<&'a mut dyn FnMut(Progress) -> ControlFlow<()>>,
+    /// Where in the whole call its fractions lie.
+    from: f64,
+    to: f64,
+}
+
+impl Default for Control<'_> {
+    fn default() -> Self {
+        Self { hook: None, from: 0.0, to: 1.0 }
+    }
 }
 
 impl<'a> Control<'a> {
     /// Reports to `hook`, which answers `Break` to cancel.
     pub fn new(hook: &'a mut dyn FnMut(Progress) -> ControlFlow<()>) -> Self {
-        Self { hook: Some(hook) }
+        Self { hook: Some(hook), ..Self::default() }
     }
 
     /// Watches nothing and never cancels.
@@ -50,12 +58,24 @@ impl<'a> Control<'a> {
         Self::default()
     }
 
+    /// The hook for a call that is a part of this one, between two fractions of it.
+    pub(crate) fn part(&mut self, from: f64, to: f64) -> Control<'_> {
+        let at = |fraction: f64| self.from + (self.to - self.from) * fraction;
+        let (from, to) = (at(from), at(to));
+        let hook: Option<&mut dyn FnMut(Progress) -> ControlFlow<()>> = match &mut self.hook {
+            Some(hook) => Some(&mut **hook),
+            None => None,
+        };
+        Control { hook, from, to }
+    }
+
     /// Reports that `stage` has come to `fraction` of the whole call.
     ///
     /// # Errors
     /// [`Cancelled`] when the hook says so.
     pub fn report(&mut self, stage: &'static str, fraction: f64) -> Result<(), Cancelled> {
-        let progress = Progress { stage, fraction: fraction.clamp(0.0, 1.0) };
+        let fraction = self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0);
+        let progress = Progress { stage, fraction };
         let answer = self.hook.as_mut().map_or(ControlFlow::Continue(()), |hook| hook(progress));
         if answer.is_break() { Err(Cancelled) } else { Ok(()) }
     }

@@ -199,6 +199,23 @@ impl IndexedMesh {
         Self::new(positions, Polygons::from_triangles(triangles))
     }
 
+    /// Checks quads; as in Rhino, one whose last corner is the third again is a triangle.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    ///
+    /// # Examples
+    /// ```
+    /// use meshwright::{IndexedMesh, glam::DVec3};
+    /// let points = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y, DVec3::NEG_Y];
+    /// let pool = IndexedMesh::from_quads(points, &[[0, 1, 2, 3], [0, 4, 1, 1]])?;
+    /// assert_eq!(pool.polygons()[1].len(), 3);
+    /// # Ok::<(), meshwright::IndexedError>(())
+    /// ```
+    pub fn from_quads(positions: Vec<DVec3>, quads: &[[u32; 4]]) -> Result<Self, IndexedError> {
+        Self::new(positions, Polygons::from_quads(quads))
+    }
+
     /// The same mesh with these attributes in place of those it carried.
     ///
     /// # Errors

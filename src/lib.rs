@@ -21,6 +21,8 @@
 //! `io` (default): readers and writers for OBJ, STL, PLY and OFF. `serde`: accounts, facts and soups serialise.
 //! `rayon`: bulk work on several threads; results are the same with and without.
 
+#[doc = include_str!("accounts.md")]
+pub mod accounts {}
 mod arena;
 mod attributes;
 mod build;
@@ -50,7 +52,7 @@ mod walk;
 pub mod walking {}
 
 pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
-pub use build::{BuildDefect, BuildError};
+pub use build::{BuildDefect, BuildError, BuildWithError};
 pub use closed::{Closed, NotClosed};
 pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
 pub use control::{Cancelled, Control, Progress};
@@ -64,9 +66,17 @@ pub use edit::{
     TriangulatedFace,
 };
 pub use geometry::deform::{DeformError, DeformOptions};
+pub use geometry::fill::{
+    BadOption, FillHolesError, FillHolesOptions, FillMethod, FilledHole, FilledHoles, HoleRefusal,
+    RefusedHole, TriangulateHoleError,
+};
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
 pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
+pub use geometry::slivers::{
+    LeftSliver, ResolvedSliver, Sliver, SliverAccount, SliverAction, SliverError, SliverKind, SliverObstacle,
+    SliverOptions,
+};
 pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;
@@ -76,16 +86,18 @@ pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};
 pub use mesh::{Mesh, SetError};
 pub use query::{
-    ClosestOptions, ClosestPoint, Crossing, Feature, MassProperties, MeshIndex, Nearest, OutwardError,
-    OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, Side, SolidIndex, TurnedOutward,
-    orient_outward,
+    ClosestOptions, ClosestPoint, Contact, Crossing, FacePair, Feature, MassProperties, MeshIndex, Nearest,
+    OutwardError, OutwardOptions, OutwardPart, QueryError, Ray, RayError, RayHit, SelfIntersectionOptions,
+    SelfIntersections, Side, SolidIndex, TurnedOutward, orient_outward,
 };
 pub use report::{
-    Attribute, Element, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation, Report,
-    Step, StepSummary,
+    Attribute, Element, Extent, Kind, LossReason, LostValue, MapMismatch, Maps, Outcome, Record, Relation,
+    Report, Step, StepSummary,
 };
 pub use soup::{CornerData, Group, MAX_ELEMENTS, PolygonSoup, Polygons};
-pub use topology::{EdgeRef, NakedEdges, NotOrientable, Topology, unify_winding};
+pub use topology::{
+    EdgeRef, NakedEdges, NotOrientable, Topology, UnifyWithError, unify_winding, unify_winding_with,
+};
 pub use traverse::{EdgeChain, EdgePath, FeatureOptions, PathError};
 pub use validate::Violation;
 

@@ -60,6 +60,11 @@ impl Chains {
         self.more.is_empty() && !self.any_conflict
     }
 
+    /// How many third and later uses of edges there are.
+    pub(crate) fn more_uses(&self) -> usize {
+        self.more.len()
+    }
+
     #[inline]
     fn add(&mut self, heads: &mut [u32], at_hubs: &mut Vec<(u32, u32, u32)>, corner: u32, a: u32, b: u32) {
         let (lo, hi, down) = if a < b { (a, b, 0) } else { (b, a, TOP) };

@@ -29,6 +29,10 @@ pub enum Element {
     Edge([u32; 2]),
     /// A corner by its face and its number in it, from 0.
     Corner([u32; 2]),
+    /// Two faces by their indices, the lower first.
+    Faces([u32; 2]),
+    /// A vertex that lies on an edge: the vertex, then the two vertices that the edge joins, the lower index first.
+    VertexOnEdge([u32; 3]),
 }
 
 impl fmt::Display for Element {
@@ -38,6 +42,8 @@ impl fmt::Display for Element {
             Self::Face(face) => write!(f, "face {face}"),
             Self::Edge([a, b]) => write!(f, "edge {a}-{b}"),
             Self::Corner([face, corner]) => write!(f, "corner {corner} of face {face}"),
+            Self::VertexOnEdge([v, a, b]) => write!(f, "vertex {v} on edge {a}-{b}"),
+            Self::Faces([a, b]) => write!(f, "faces {a} and {b}"),
         }
     }
 }
@@ -99,6 +105,48 @@ named! {
         ParallelEdge = "parallel_edge",
         /// An edge at which the surface turns by more than an angle; parted.
         SharpEdge = "sharp_edge",
+        /// An edge of a crack: two boundary edges that lay at one place, within the tolerance, became one.
+        StitchedEdge = "stitched_edge",
+        /// A vertex that lay within another face's edge, within the tolerance; the edge was cut there.
+        TJunction = "t_junction",
+        /// A sheet that hung on a surface at edges with three or more faces; its faces were dropped.
+        Fin = "fin",
+        /// A face with an edge that has no length; collapsed.
+        Needle = "needle",
+        /// A triangle with a corner on the opposite edge; merged into its neighbour, so that no hole opens.
+        Cap = "cap",
+        /// A larger face without height, or that would be cut into triangles of which one has none; cut and resolved.
+        FlatFace = "flat_face",
+        /// A face with height that went with slivers beside it; its neighbours cover its place.
+        AbsorbedFace = "absorbed_face",
+        /// A face without height that could not be resolved; left.
+        LeftSliver = "left_sliver",
+        /// A part with fewer faces than the caller asked for; its faces were dropped.
+        Debris = "debris",
+        /// A hole that was filled.
+        FilledHole = "filled_hole",
+        /// A hole with islands, or several loops around one hole; left.
+        HoleWithIslands = "hole_with_islands",
+        /// A hole whose every filler would double an edge; left.
+        HemmedInHole = "hemmed_in_hole",
+        /// A hole that is the outside of one face, or whose filler would have about the size of its part; left.
+        OutsideOfSheet = "outside_of_sheet",
+        /// A hole of more edges than were asked for; left.
+        LongHole = "long_hole",
+        /// A vertex without a face; dropped.
+        IsolatedVertex = "isolated_vertex",
+        /// A shell that was turned: outward, or inward around a cavity.
+        TurnedShell = "turned_shell",
+        /// A shell that crosses another; turned by its own volume.
+        CrossingShell = "crossing_shell",
+        /// An open part that is a sheet: to close it, a filler of about its own size would be needed. Left.
+        OpenSheet = "open_sheet",
+        /// An open part that was cut because it cannot be oriented. Left.
+        NotOrientable = "not_orientable",
+        /// An open part with holes that could not be filled. Left.
+        OpenPart = "open_part",
+        /// Two faces that pass through each other. Left.
+        SelfIntersection = "self_intersection",
     }
 }
 
@@ -113,6 +161,8 @@ named! {
         RepairPolygons = "repair_polygons",
         /// Dropping of faces that are there already.
         DropDuplicates = "drop_duplicates",
+        /// Closing of cracks and T-junctions.
+        Stitch = "stitch",
         /// Making windings agree across edges.
         Unify = "unify",
         /// Pairing of the faces at edges with three or more of them.
@@ -121,8 +171,22 @@ named! {
         CutEdges = "cut_edges",
         /// Splitting of vertices so that each has one fan.
         SplitVertices = "split_vertices",
+        /// Dropping of sheets that hang on a surface at edges with three or more faces.
+        DropFins = "drop_fins",
+        /// Resolving of zero-area faces, caps and needles.
+        ResolveSlivers = "resolve_slivers",
+        /// Dropping of parts with few faces.
+        DropDebris = "drop_debris",
+        /// Filling of holes.
+        FillHoles = "fill_holes",
+        /// Dropping of vertices without a face.
+        DropIsolated = "drop_isolated",
         /// Turning of whole parts outward.
         TurnOutward = "turn_outward",
+        /// Looking for faces that pass through each other.
+        FindIntersections = "find_intersections",
+        /// Looking for parts that are still open.
+        FindOpenParts = "find_open_parts",
         /// Parting of sharp edges.
         Unweld = "unweld",
         /// Cutting of polygons into triangles by the shared rule.
@@ -178,6 +242,16 @@ pub struct LostValue {
     pub element: Element,
 }
 
+/// How large something is that a record stands for, where it is more than the element named.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Extent {
+    /// The edges around a hole, or the faces of a part.
+    pub elements: usize,
+    /// The area of what fills the hole, or of the part, in square units.
+    pub area: f64,
+}
+
 /// One change, with its element in the input's numbering and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -190,6 +264,21 @@ pub struct Record {
     pub element: Element,
     /// Where in space: the vertex, the edge's midpoint, the mean of the face's corners. `None` when not finite.
     pub place: Option<DVec3>,
+    /// The size of a hole or a part. `None` for single elements.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub extent: Option<Extent>,
+}
+
+impl Record {
+    /// A record of a single element.
+    pub(crate) fn new(step: Step, kind: Kind, element: Element, place: Option<DVec3>) -> Self {
+        Self { step, kind, element, place, extent: None }
+    }
+
+    /// A record of something larger than the element named.
+    pub(crate) fn sized(self, elements: usize, area: f64) -> Self {
+        Self { extent: Some(Extent { elements, area }), ..self }
+    }
 }
 
 /// What one step did in all, recorded or not.
@@ -198,11 +287,22 @@ pub struct Record {
 pub struct StepSummary {
     /// The step.
     pub step: Step,
-    /// How many elements it changed. An exact weld counts its merges here and keeps no record of them: it moves
+    /// How many elements it changed; or found, if it only looks. An exact weld counts its merges here and keeps no record of them: it moves
     /// nothing, and [`Maps`] names every one.
     pub changed: usize,
     /// The tolerance it used, in the mesh's units, if it has one.
     pub tolerance: Option<f64>,
+    /// How far it moved the surface, in the mesh's units: the farthest that one operation did. What was dropped or made new
+    /// is told by records.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub moved: f64,
+}
+
+impl StepSummary {
+    /// A step without a tolerance that moved nothing.
+    pub(crate) fn new(step: Step, changed: usize) -> Self {
+        Self { step, changed, tolerance: None, moved: 0.0 }
+    }
 }
 
 /// A located, typed account. Empty means: nothing was changed but what [`Maps`] and exact welding tell. What happened to
@@ -225,6 +325,17 @@ impl Report {
     /// Whether there is no record.
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
+    }
+
+    /// Adds what a step did to what the same step did before.
+    pub(crate) fn add_step(&mut self, step: StepSummary) {
+        match self.steps.iter_mut().find(|s| s.step == step.step) {
+            Some(all) => {
+                all.changed += step.changed;
+                all.moved = all.moved.max(step.moved);
+            }
+            None => self.steps.push(step),
+        }
     }
 
     /// The number of records of one kind. Linear in the records.
@@ -415,10 +526,23 @@ impl Relation {
     pub(crate) fn from_old_of(old_count: usize, starts: Vec<u32>, items: Vec<u32>) -> Self {
         let count = starts.len().saturating_sub(1);
         let single = items.len() == count && starts.iter().zip(0u32..).all(|(&s, i)| s == i);
-        let backward = Lists { starts: if single { Vec::new() } else { starts }, items };
-        let pairs = backward.pairs().map(|(new, old)| (old, new));
-        let forward = Lists::group(old_count, pairs);
-        Self { forward, backward }
+        let mut forward = vec![0u32; old_count + 1];
+        items.iter().for_each(|&old| forward[old as usize + 1] += 1);
+        let is_single = forward[1..].iter().all(|&n| n == 1);
+        (0..old_count).for_each(|i| forward[i + 1] += forward[i]);
+        let mut list = vec![0u32; items.len()];
+        let mut at = forward.clone();
+        for (range, new) in starts.windows(2).zip(0..) {
+            for &old in &items[range[0] as usize..range[1] as usize] {
+                let slot = &mut at[old as usize];
+                list[*slot as usize] = new;
+                *slot += 1;
+            }
+        }
+        Self {
+            forward: Lists { starts: if is_single { Vec::new() } else { forward }, items: list },
+            backward: Lists { starts: if single { Vec::new() } else { starts }, items },
+        }
     }
 
     /// The number of old elements.

@@ -55,6 +55,22 @@ impl Polygons {
         }
     }
 
+    /// From quads; as in Rhino, one whose last corner is the third again is a triangle.
+    ///
+    /// # Examples
+    /// ```
+    /// use meshwright::Polygons;
+    /// let faces = Polygons::from_quads(&[[0, 1, 2, 3], [0, 4, 1, 1]]);
+    /// assert_eq!((&faces[0], &faces[1]), (&[0, 1, 2, 3][..], &[0, 4, 1][..]));
+    /// ```
+    pub fn from_quads(quads: &[[u32; 4]]) -> Self {
+        let mut faces = Self::with_capacity(quads.len(), 4 * quads.len());
+        for q in quads {
+            faces.push(q[..if q[2] == q[3] { 3 } else { 4 }].iter().copied());
+        }
+        faces
+    }
+
     /// Removes all faces and keeps the room.
     pub fn clear(&mut self) {
         self.starts.truncate(1);

@@ -1,94 +1,16 @@
 //! Nearest elements beside the tutorial's loops over all of them; inside and outside; mass properties.
 
 mod igl;
+#[path = "tutorial/naive.rs"]
+mod naive;
 mod shapes;
 
 use meshwright::glam::{DMat3, DVec3, dvec3};
 use meshwright::{ClosestOptions, Feature, IndexedMesh, Mesh, QueryError, Side};
+use naive::Plain;
 use shapes::Noise;
 
 const ALL: ClosestOptions = ClosestOptions { max_distance: f64::INFINITY, isolated_vertices: true };
-
-/// The tutorial's loop over vertices.
-fn naive_vertex(pool: &IndexedMesh, p: DVec3) -> (usize, f64) {
-    let mut best = (0, f64::INFINITY);
-    for (i, v) in pool.positions().iter().enumerate() {
-        if v.distance_squared(p) < best.1 {
-            best = (i, v.distance_squared(p));
-        }
-    }
-    (best.0, best.1.sqrt())
-}
-
-/// The tutorial's loop over face centres.
-fn naive_center(pool: &IndexedMesh, p: DVec3) -> (usize, f64) {
-    let mut best = (0, f64::INFINITY);
-    for (i, f) in pool.polygons().iter().enumerate() {
-        let center = f.iter().map(|&v| pool.positions()[v as usize]).sum::<DVec3>() / f.len() as f64;
-        if center.distance_squared(p) < best.1 {
-            best = (i, center.distance_squared(p));
-        }
-    }
-    (best.0, best.1.sqrt())
-}
-
-/// The nearest point of a segment, clamped.
-fn on_segment(p: DVec3, a: DVec3, b: DVec3) -> DVec3 {
-    let along = b - a;
-    let t = (p - a).dot(along) / along.length_squared();
-    if t.is_finite() { a + along * t.clamp(0.0, 1.0) } else { a }
-}
-
-/// The tutorial's nearest point of a triangle by regions (Ericson), its last line put right: `w` times all of `ac`.
-fn on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let (ab, ac) = (b - a, c - a);
-    let normal = ab.cross(ac);
-    if normal.length() <= 1e-9 * ab.length().max(ac.length()).powi(2) {
-        let feet = [on_segment(p, a, b), on_segment(p, b, c), on_segment(p, c, a)];
-        return feet.into_iter().min_by(|x, y| x.distance(p).total_cmp(&y.distance(p))).expect("three");
-    }
-    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
-    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
-    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    if d1 <= 0. && d2 <= 0. {
-        return a;
-    }
-    if d3 >= 0. && d4 <= d3 {
-        return b;
-    }
-    if d6 >= 0. && d5 <= d6 {
-        return c;
-    }
-    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-    if vc <= 0. && d1 >= 0. && d3 <= 0. {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    if vb <= 0. && d2 >= 0. && d6 <= 0. {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    if va <= 0. && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let (v, w) = (vb / (va + vb + vc), vc / (va + vb + vc));
-    a + ab * v + ac * w
-}
-
-/// The distance to the surface, triangles only.
-fn naive_surface(pool: &IndexedMesh, p: DVec3) -> f64 {
-    let corners = |f: &[u32]| [f[0], f[1], f[2]].map(|v| pool.positions()[v as usize]);
-    pool.polygons().iter().map(|f| on_triangle(p, corners(f)).distance(p)).fold(f64::INFINITY, f64::min)
-}
-
-fn naive_edge(pool: &IndexedMesh, p: DVec3) -> f64 {
-    let mut best = f64::INFINITY;
-    for f in pool.polygons().iter() {
-        for (i, &v) in f.iter().enumerate() {
-            let [a, b] = [v, f[(i + 1) % f.len()]].map(|v| pool.positions()[v as usize]);
-            best = best.min(on_segment(p, a, b).distance(p));
-        }
-    }
-    best
-}
 
 fn point(noise: &mut Noise, size: f64) -> DVec3 {
     (dvec3(noise.unit(), noise.unit(), noise.unit()) - 0.5) * size
@@ -101,7 +23,7 @@ fn nearest_elements_are_those_of_the_naive_loops() {
     for pool in [shapes::icosphere(2), shapes::torus(12, 8), shapes::cube(), shapes::grid(6), cavity] {
         let mesh = shapes::mesh(&pool);
         let index = mesh.index();
-        let triangles = shapes::mesh(&shapes::fanned(&pool)).to_indexed();
+        let (plain, triangles) = (Plain::from(&pool), Plain::from(&shapes::fanned(&pool)));
         let is_flat = pool.polygons().iter().all(|f| f.len() == 3) || pool == shapes::cube();
         let vertices: Vec<_> = mesh.vertices().collect();
         let faces: Vec<_> = mesh.faces().collect();
@@ -113,21 +35,24 @@ fn nearest_elements_are_those_of_the_naive_loops() {
                 _ => point(&mut noise, 8e3),
             };
             let vertex = index.closest_vertex(p, ALL).expect("asked well").expect("a vertex");
-            let (v, distance) = naive_vertex(&pool, p);
+            let (v, distance) = naive::closest_vertex(&plain, p);
             assert_eq!((vertex.element, vertex.point), (vertices[v], mesh.position(vertices[v])));
             assert!((vertex.distance - distance).abs() <= 1e-12 * distance);
             let center = index.closest_face_center(p, ALL).expect("asked well").expect("a face");
-            let (f, distance) = naive_center(&pool, p);
+            let (f, distance) = naive::closest_face_center(&plain, p);
             assert_eq!(center.element, faces[f], "{p}");
             assert!((center.distance - distance).abs() <= 1e-12 * distance);
             let edge = index.closest_edge(p, ALL).expect("asked well").expect("an edge");
-            assert!((edge.distance - naive_edge(&pool, p)).abs() <= 1e-9);
+            assert!((edge.distance - naive::closest_edge(&plain, p)).abs() <= 1e-9);
             let h = mesh.edge_halfedge(edge.element);
             let [a, b] = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
-            assert!(on_segment(edge.point, a, b).distance(edge.point) < 1e-9);
+            assert!(naive::on_segment(edge.point, a, b).distance(edge.point) < 1e-9);
             let surface = index.closest_point(p, ALL).expect("asked well").expect("a point");
             if is_flat {
-                assert!((surface.distance - naive_surface(&triangles, p)).abs() <= 1e-9, "{p} {surface:?}");
+                assert!(
+                    (surface.distance - naive::closest_point(&triangles, p)).abs() <= 1e-9,
+                    "{p} {surface:?}"
+                );
             }
             assert!(surface.distance <= vertex.distance && surface.distance <= edge.distance + 1e-9);
             let at: DVec3 =

@@ -1,6 +1,8 @@
 //! Rays: exact, watertight, and in agreement with the winding number on the whole way.
 
 mod corpus;
+#[path = "tutorial/naive.rs"]
+mod naive;
 mod shapes;
 
 use meshwright::cleanup::{CleanOptions, clean};
@@ -15,30 +17,6 @@ fn ray(origin: DVec3, direction: DVec3) -> Ray {
 
 fn crossings(hits: &[RayHit]) -> usize {
     hits.iter().filter(|h| h.crossing != Crossing::Touch).count()
-}
-
-/// The tutorial's loop over all triangles (Moeller and Trumbore), without its threshold. Sorted.
-fn naive_hits(pool: &IndexedMesh, origin: DVec3, direction: DVec3) -> Vec<f64> {
-    let mut found = Vec::new();
-    for t in pool.polygons().iter() {
-        let [a, b, c] = [t[0], t[1], t[2]].map(|v| pool.positions()[v as usize]);
-        let (e1, e2) = (b - a, c - a);
-        let p = direction.cross(e2);
-        let det = e1.dot(p);
-        if det == 0.0 {
-            continue;
-        }
-        let s = origin - a;
-        let u = s.dot(p) / det;
-        let q = s.cross(e1);
-        let v = direction.dot(q) / det;
-        let t = e2.dot(q) / det;
-        if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0 {
-            found.push(t);
-        }
-    }
-    found.sort_by(f64::total_cmp);
-    found
 }
 
 /// How often the surface winds about a point, by solid angles (Van Oosterom and Strackee, "The Solid Angle of a Plane
@@ -381,7 +359,7 @@ fn rays_aimed_at_vertices_edges_and_faces_of_curved_shapes_keep_account() {
 fn generic_rays_hit_what_the_naive_loop_hits() {
     let mut noise = Noise(4);
     let pool = shapes::icosphere(3);
-    let mesh = shapes::mesh(&pool);
+    let (mesh, plain) = (shapes::mesh(&pool), naive::Plain::from(&pool));
     let index = mesh.index();
     let rays: Vec<Ray> = (0..2000)
         .map(|_| {
@@ -390,9 +368,9 @@ fn generic_rays_hit_what_the_naive_loop_hits() {
         })
         .collect();
     for (r, hits) in rays.iter().zip(index.hits_batch(&rays)) {
-        let naive = naive_hits(&pool, r.origin(), r.direction());
+        let naive = naive::raycast(&plain, r.origin(), r.direction());
         assert_eq!(hits.len(), naive.len(), "{r:?}");
-        assert!(hits.iter().zip(&naive).all(|(h, t)| (h.t - t).abs() < 1e-9));
+        assert!(hits.iter().zip(&naive).all(|(h, t)| (h.t - t.0).abs() < 1e-9));
         assert!(hits.iter().all(|h| h.feature == Feature::Face(h.face)));
     }
     let single: Vec<_> = rays.iter().map(|r| index.first_hit(r)).collect();

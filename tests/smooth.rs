@@ -1,6 +1,8 @@
 //! Smoothing: meaning, shrinkage, boundaries, refusals.
 
 mod igl;
+#[path = "tutorial/naive.rs"]
+mod naive;
 mod shapes;
 
 use igl::Igl;
@@ -9,6 +11,13 @@ use meshwright::{Boundary, Control, IndexedMesh, Mesh, Progress, SmoothError, Sm
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 
+const METHODS: [SmoothMethod; 4] = [
+    SmoothMethod::Laplacian,
+    SmoothMethod::Taubin { mu: -0.53 },
+    SmoothMethod::Cotangent,
+    SmoothMethod::Implicit,
+];
+
 fn smooth(mesh: &mut Mesh, options: SmoothOptions<'_>) {
     mesh.smooth(options).expect("smoothed");
     assert_eq!(mesh.validate(), Ok(()));
@@ -16,35 +25,6 @@ fn smooth(mesh: &mut Mesh, options: SmoothOptions<'_>) {
 
 fn positions(mesh: &Mesh) -> Vec<DVec3> {
     mesh.to_indexed().positions().to_vec()
-}
-
-/// The tutorial's loop, on a vertex pool: neighbours from the faces, all moved at once.
-fn naive(pool: &IndexedMesh, lambda: f64, iterations: u32, stays: impl Fn(usize) -> bool) -> Vec<DVec3> {
-    let mut positions = pool.positions().to_vec();
-    for _ in 0..iterations {
-        let mut moved = positions.clone();
-        for v in 0..positions.len() {
-            let mut neighbours: Vec<u32> = Vec::new();
-            for f in pool.polygons().iter() {
-                let n = f.len();
-                for i in 0..n {
-                    if f[i] as usize == v {
-                        for w in [f[(i + 1) % n], f[(i + n - 1) % n]] {
-                            if !neighbours.contains(&w) {
-                                neighbours.push(w);
-                            }
-                        }
-                    }
-                }
-            }
-            if !neighbours.is_empty() && !stays(v) {
-                let sum: DVec3 = neighbours.iter().map(|&w| positions[w as usize]).sum();
-                moved[v] = positions[v] + (sum / neighbours.len() as f64 - positions[v]) * lambda;
-            }
-        }
-        positions = moved;
-    }
-    positions
 }
 
 fn unit_sphere(levels: u32) -> Mesh {
@@ -66,7 +46,8 @@ fn laplacian_smoothing_equals_the_tutorials_loop_on_any_faces() {
                 let mut ours = mesh.clone();
                 smooth(&mut ours, SmoothOptions { lambda: 0.7, iterations, boundary, ..Default::default() });
                 let on_boundary: Vec<bool> = mesh.vertices().map(|v| mesh.is_boundary_vertex(v)).collect();
-                let expected = naive(&pool, 0.7, iterations, |v| !free && on_boundary[v]);
+                let expected =
+                    naive::laplacian(&(&pool).into(), 0.7, iterations, |v| !free && on_boundary[v]);
                 for (p, q) in positions(&ours).iter().zip(expected) {
                     assert!(p.distance(q) < 1e-12, "{p} {q}");
                 }
@@ -147,6 +128,88 @@ fn the_cotangent_step_is_libigls() {
     }
 }
 
+/// For each vertex the mean of what `of` says of its neighbours, weighted by cotangents at the pool's positions that are
+/// not below zero; none without a weight. Triangles only.
+fn weighted_means(pool: &IndexedMesh, of: &[DVec3]) -> Vec<Option<DVec3>> {
+    let mut weights = std::collections::BTreeMap::<[u32; 2], f64>::new();
+    for t in pool.polygons().iter() {
+        for i in 0..3 {
+            let [a, b, apex] = [0, 1, 2].map(|k| t[(i + k) % 3]);
+            let [p, q, o] = [a, b, apex].map(|v| pool.positions()[v as usize]);
+            let (u, v) = (p - o, q - o);
+            *weights.entry([a.min(b), a.max(b)]).or_default() += u.dot(v) / u.cross(v).length();
+        }
+    }
+    let mut sums = vec![(DVec3::ZERO, 0.0); of.len()];
+    for ([a, b], weight) in weights {
+        for (v, w) in [(a, b), (b, a)] {
+            sums[v as usize].0 += of[w as usize] * weight.max(0.0);
+            sums[v as usize].1 += weight.max(0.0);
+        }
+    }
+    sums.into_iter().map(|(sum, weight)| (weight > 0.0).then(|| sum / weight)).collect()
+}
+
+#[test]
+fn an_implicit_step_goes_where_its_pull_leads_back_to_where_it_was() {
+    for pool in [shapes::icosphere(2), shapes::fanned(&shapes::torus(9, 7)), shapes::grid(6)] {
+        for lambda in [0.01, 0.7, 10.0, 1000.0, 10_000.0] {
+            let mut mesh = shapes::mesh(&pool);
+            let rim: Vec<bool> = mesh.vertices().map(|v| mesh.is_boundary_vertex(v)).collect();
+            smooth(&mut mesh, SmoothOptions { method: SmoothMethod::Implicit, lambda, ..Default::default() });
+            let after = positions(&mesh);
+            for (v, mean) in weighted_means(&pool, &after).into_iter().enumerate() {
+                let (x, p) = (after[v], pool.positions()[v]);
+                let back = mean.filter(|_| !rim[v]).map_or(x, |mean| x + (x - mean) * lambda);
+                assert!(back.distance(p) < 1e-11 * (1.0 + lambda), "{lambda}, vertex {v}: {back} {p}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_short_implicit_step_is_a_forward_one_and_a_long_one_stays_in_the_box() {
+    let mut noise = shapes::Noise(8);
+    let mut rough = unit_sphere(3);
+    rough.deform(|p| p * (1.0 + 0.1 * noise.unit()), Default::default()).expect("finite");
+    let stepped = |method, lambda| {
+        let mut mesh = rough.clone();
+        smooth(&mut mesh, SmoothOptions { method, lambda, ..Default::default() });
+        mesh
+    };
+    let [backward, forward] =
+        [SmoothMethod::Implicit, SmoothMethod::Cotangent].map(|method| positions(&stepped(method, 1e-5)));
+    assert!(backward.iter().zip(&forward).all(|(p, q)| p.distance(*q) < 1e-9));
+    let mut before = volume(&rough);
+    for lambda in [1.0, 10.0, 100.0, 10_000.0] {
+        let mesh = stepped(SmoothMethod::Implicit, lambda);
+        let (inner, outer) = (mesh.bounds().expect("vertices"), rough.bounds().expect("vertices"));
+        assert!(inner.min.cmpge(outer.min).all() && inner.max.cmple(outer.max).all());
+        assert!(volume(&mesh) < before, "a longer step shrinks more");
+        before = volume(&mesh);
+    }
+}
+
+#[test]
+fn an_implicit_step_obeys_locks_and_boundaries() {
+    let pool = shapes::grid(6);
+    for boundary in [Boundary::Fixed, Boundary::Slide, Boundary::Free] {
+        let mut mesh = shapes::mesh(&pool);
+        let locked: Vec<_> = mesh.vertices().filter(|&v| mesh.position(v).x == 3.0).collect();
+        let rim: Vec<_> = mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect();
+        let method = SmoothMethod::Implicit;
+        smooth(
+            &mut mesh,
+            SmoothOptions { method, lambda: 50.0, boundary, locked: &locked, ..Default::default() },
+        );
+        let moved =
+            |v| mesh.position(v) != pool.positions()[mesh.vertices().position(|w| w == v).expect("there")];
+        assert!(!locked.iter().any(|&v| moved(v)), "{boundary:?}");
+        assert_eq!(rim.iter().any(|&v| moved(v)), boundary != Boundary::Fixed, "{boundary:?}");
+        assert!(mesh.vertices().filter(|&v| moved(v)).count() > 15, "{boundary:?}");
+    }
+}
+
 #[test]
 fn cotangent_weights_hardly_slide_vertices_within_a_plane() {
     // An uneven flat grid: its vertices are where they should be, whatever their spacing.
@@ -170,7 +233,7 @@ fn degenerate_triangles_do_no_harm() {
     let mut same = shapes::tetrahedron();
     same.map_positions(|_| DVec3::ONE).expect("finite");
     for pool in [flat, same] {
-        for method in [SmoothMethod::Laplacian, SmoothMethod::Taubin { mu: -0.53 }, SmoothMethod::Cotangent] {
+        for method in METHODS {
             let mut mesh = shapes::mesh(&pool);
             smooth(&mut mesh, SmoothOptions { method, iterations: 20, ..Default::default() });
             assert!(positions(&mesh).iter().all(|p| p.is_finite() && p.length() < 2.0));
@@ -304,7 +367,7 @@ fn a_call_cancelled_half_way_changes_nothing() {
 #[test]
 fn the_largest_and_smallest_numbers_are_smoothed_like_others() {
     for size in [1e-300, 1e300, f64::MAX] {
-        for method in [SmoothMethod::Laplacian, SmoothMethod::Cotangent] {
+        for method in [SmoothMethod::Laplacian, SmoothMethod::Cotangent, SmoothMethod::Implicit] {
             let options = || SmoothOptions { method, iterations: 2, ..Default::default() };
             let mut pool = shapes::icosphere(1);
             pool.map_positions(|p| p.normalize()).expect("finite");
@@ -324,7 +387,7 @@ fn the_largest_and_smallest_numbers_are_smoothed_like_others() {
 
 proptest! {
     #[test]
-    fn smoothing_does_not_depend_on_how_vertices_are_numbered(seed in any::<u64>(), method in prop::sample::select(vec![SmoothMethod::Laplacian, SmoothMethod::Taubin { mu: -0.53 }, SmoothMethod::Cotangent])) {
+    fn smoothing_does_not_depend_on_how_vertices_are_numbered(seed in any::<u64>(), method in prop::sample::select(METHODS.to_vec())) {
         let pool = shapes::icosphere(1);
         let shuffled = shapes::shuffled(&pool, seed);
         let run = |pool: &IndexedMesh| {

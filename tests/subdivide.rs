@@ -7,7 +7,7 @@ mod shapes;
 use igl::Igl;
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    Control, Element, IndexedMesh, Mesh, Outcome, Progress, Scheme, Step, SubdivideError, SubdivideOptions,
+    Control, IndexedMesh, Mesh, Outcome, Progress, Scheme, Step, SubdivideError, SubdivideOptions,
 };
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -563,16 +563,6 @@ fn a_cancelled_call_says_so_wherever_it_is_stopped() {
             );
         }
     }
-}
-
-#[test]
-fn carried_normals_are_left_behind_and_named() {
-    let mut mesh = built(&shapes::cube());
-    mesh.compute_normals(Default::default());
-    let outcome = fine(&mesh, Scheme::Midpoint, 1);
-    assert_eq!(outcome.report.not_carried, [meshwright::Attribute::VertexNormals]);
-    assert!(outcome.value.to_indexed().normals().is_none());
-    assert!(outcome.report.records.iter().all(|r| matches!(r.element, Element::Face(_))));
 }
 
 proptest! {

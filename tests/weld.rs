@@ -1,6 +1,8 @@
 //! Weld and unweld on the mesh.
 
 mod corpus;
+#[path = "tutorial/naive.rs"]
+mod naive;
 mod shapes;
 
 use meshwright::cleanup::{CleanError, Weld, index};
@@ -30,26 +32,6 @@ fn unweld(mesh: &Mesh, degrees: f64) -> Outcome<Mesh> {
 fn apart(pool: &IndexedMesh) -> Mesh {
     let soup = shapes::unwelded(pool);
     shapes::mesh(&IndexedMesh::try_from(soup).expect("a valid vertex pool"))
-}
-
-/// The tutorial's quadratic loop: for each vertex the first kept one nearer than the tolerance.
-fn naive(positions: &[DVec3], tolerance: f64) -> Vec<usize> {
-    let mut kept: Vec<usize> = Vec::new();
-    let mut merged = Vec::new();
-    for (i, p) in positions.iter().enumerate() {
-        let joins = |j: &usize| {
-            let d = (positions[*j] - *p) / tolerance;
-            if tolerance == 0.0 { positions[*j] == *p } else { d.length_squared() < 1.0 }
-        };
-        match kept.iter().copied().find(joins) {
-            Some(j) => merged.push(j),
-            None => {
-                kept.push(i);
-                merged.push(i);
-            }
-        }
-    }
-    merged
 }
 
 #[test]
@@ -262,7 +244,7 @@ proptest! {
     fn welding_a_mesh_follows_the_tutorials_loop(seed in any::<u64>(), size in 0.0f64..0.3, t in prop_oneof![Just(0.0), 1e-3f64..0.6]) {
         let pool = jittered(seed, size);
         let outcome = weld(&shapes::mesh(&pool), t);
-        let expected = naive(pool.positions(), t);
+        let expected = naive::weld(pool.positions(), t);
         // What splitting takes back keeps its own place.
         let split = outcome.report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0);
         for (v, &kept) in expected.iter().enumerate() {

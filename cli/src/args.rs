@@ -94,8 +94,12 @@ pub(crate) struct Clean {
     #[arg(long, value_enum, default_value = "preserve")]
     pub(crate) profile: Profile,
     /// Merge vertices first: none, exact, auto (a tolerance proposed from the data), or closer than a tolerance
-    #[arg(long, value_name = "none|exact|auto|TOL", default_value = "exact", allow_hyphen_values = true, value_parser = weld_or_auto)]
-    pub(crate) weld: Weld,
+    /// [default: exact; of solid: auto]
+    #[arg(long, value_name = "none|exact|auto|TOL", allow_hyphen_values = true, value_parser = weld_or_auto)]
+    pub(crate) weld: Option<Weld>,
+    /// Drop parts with fewer faces than this
+    #[arg(long, value_name = "N")]
+    pub(crate) debris: Option<usize>,
     /// Write the account to this file as JSON
     #[arg(long, value_name = "R.json")]
     pub(crate) report: Option<PathBuf>,
@@ -109,6 +113,8 @@ pub(crate) struct Clean {
 pub(crate) enum Profile {
     /// Touch only what forbids a manifold
     Preserve,
+    /// Make closed, outward solids; exit code 1 if a part cannot become one
+    Solid,
 }
 
 /// Arguments of `convert` and `flip`.
@@ -210,7 +216,7 @@ pub(crate) struct Smooth {
     /// How often
     #[arg(long, value_name = "N")]
     pub(crate) iterations: u32,
-    /// How far a step goes, above 0 and at most 1
+    /// How far a step goes, above 0 and at most 1; at most 10000 for `implicit`
     #[arg(long, value_name = "L", allow_hyphen_values = true)]
     pub(crate) lambda: f64,
     /// The second step of `taubin`, below -L [default: for a pass band of 0.1]
@@ -233,6 +239,8 @@ pub(crate) enum SmoothMethod {
     Taubin,
     /// The mean of its neighbours, weighted by cotangents
     Cotan,
+    /// The same in one backward step of any length up to 10000
+    Implicit,
 }
 
 /// What boundary vertices do.

@@ -3,16 +3,17 @@
 use crate::progress;
 use crate::session::{Failure, Fields, Phase, Session};
 use crate::text;
-use meshwright::cleanup::{CleanError, CleanOptions, Weld, clean, clean_indexed, index};
-use meshwright::io::{Limits, Loaded, read_file};
-use meshwright::{Control, IndexedMesh, LostValue, Maps, Mesh, Outcome, PolygonSoup, Report};
+use meshwright::cleanup::{CleanError, CleanOptions, Weld, clean, clean_indexed, index_with};
+use meshwright::io::{Limits, Loaded, read_file_with};
+use meshwright::{BuildWithError, Control, IndexedMesh, LostValue, Maps, Mesh, Outcome, PolygonSoup, Report};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// Reads a file, and says on standard error what the reader tolerated.
 pub(crate) fn load(session: &mut Session, path: &Path) -> Result<Loaded, Failure> {
-    let loaded =
-        session.timed(Phase::Read, || progress::named("reading", || read_file(path, &Limits::default())));
+    let loaded = session.timed(Phase::Read, || {
+        progress::shown(|hook| read_file_with(path, &Limits::default(), Control::new(hook)))
+    });
     let loaded = loaded.map_err(|error| Failure::input(path, &error))?;
     for note in &loaded.notes {
         session.say(&format!("{}: {note}", path.display()));
@@ -93,8 +94,7 @@ fn strict_mesh<T>(
     loaded: &Loaded,
     choose: impl FnOnce((IndexedMesh, Mesh)) -> T,
 ) -> Result<Outcome<T>, Failure> {
-    let indexed =
-        session.timed(Phase::Build, || progress::named("welding", || index(&loaded.soup, Weld::Exact)))?;
+    let indexed = index_shown(session, &loaded.soup, Weld::Exact)?;
     let fields = session.fields(false);
     if let Some(first) = indexed.report.records.first() {
         let more = indexed.report.records.len() - 1;
@@ -102,10 +102,15 @@ fn strict_mesh<T>(
         return Err(Failure::Refused { message, json: fields.with("defects", &indexed.report.records) });
     }
     let Outcome { value: pool, report, maps } = indexed;
-    match session.timed(Phase::Build, || progress::named("building", || Mesh::build(&pool))) {
+    let built =
+        session.timed(Phase::Build, || progress::shown(|hook| Mesh::build_with(&pool, Control::new(hook))));
+    match built {
         Ok(mesh) => Ok(Outcome { value: choose((pool, mesh)), report, maps }),
         Err(error) => {
-            let json = fields.with("defects", &error.defects);
+            let json = match &error {
+                BuildWithError::Refused(refused) => fields.with("defects", &refused.defects),
+                _ => fields,
+            };
             Err(Failure::Refused { message: error.to_string(), json })
         }
     }
@@ -118,9 +123,17 @@ pub(crate) fn indexed(
     weld: Weld,
 ) -> Result<(Loaded, Outcome<IndexedMesh>), Failure> {
     let loaded = load(session, path)?;
-    let outcome = session.timed(Phase::Build, || progress::named("welding", || index(&loaded.soup, weld)))?;
+    let outcome = index_shown(session, &loaded.soup, weld)?;
     say_changes(session, &outcome.report);
     Ok((loaded, outcome))
+}
+
+fn index_shown(
+    session: &mut Session,
+    soup: &PolygonSoup,
+    weld: Weld,
+) -> Result<Outcome<IndexedMesh>, CleanError> {
+    session.timed(Phase::Build, || progress::shown(|hook| index_with(soup, weld, Control::new(hook))))
 }
 
 /// Says on standard error what was changed, in a line per kind.

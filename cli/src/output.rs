@@ -3,8 +3,8 @@
 use crate::args::Output;
 use crate::progress;
 use crate::session::{Failure, Phase, Session};
-use meshwright::PolygonSoup;
 use meshwright::io::{self, Encoding, Lost, WriteError};
+use meshwright::{Control, PolygonSoup};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -51,7 +51,9 @@ pub(crate) fn stage_mesh(
     let (path, format) = (&output.output, output.format()?);
     let encoding = if output.ascii { Encoding::Ascii } else { Encoding::Binary };
     let staged = session.timed(Phase::Write, || {
-        progress::named("writing", || stage(path, |sink| io::write(soup, format, encoding, sink)))
+        progress::shown(|hook| {
+            stage(path, |sink| io::write_with(soup, format, encoding, sink, Control::new(hook)))
+        })
     });
     let (staged, lost) = staged.map_err(|error| match error {
         WriteError::Io(error) => failed(path, &error),

@@ -3,7 +3,6 @@
 use meshwright::Progress;
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
-use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// How long people wait before they are told something.
@@ -11,31 +10,6 @@ const PATIENCE: Duration = Duration::from_millis(300);
 
 /// To the beginning of the line, and nothing on it.
 const CLEAR: &str = "\r\x1b[K";
-
-/// Runs something that has no hook, and says on standard error what it is, if that is a terminal and it takes a while.
-pub(crate) fn named<T>(what: &str, run: impl FnOnce() -> T) -> T {
-    let err = std::io::stderr();
-    if !err.is_terminal() {
-        return run();
-    }
-    named_on(err, PATIENCE, what, run)
-}
-
-fn named_on<T>(mut sink: impl Write + Send, patience: Duration, what: &str, run: impl FnOnce() -> T) -> T {
-    let (done, waiting) = channel::<()>();
-    std::thread::scope(|scope| {
-        scope.spawn(move || {
-            if waiting.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
-                let _ = write!(sink, "{CLEAR}{what}").and_then(|()| sink.flush());
-                // Nothing is ever sent: this ends when the other side is gone.
-                let _ = waiting.recv();
-                let _ = write!(sink, "{CLEAR}").and_then(|()| sink.flush());
-            }
-        });
-        let _done = done;
-        run()
-    })
-}
 
 /// Runs something with a hook that shows progress on standard error, if that is a terminal and it takes a while.
 pub(crate) fn shown<T>(run: impl FnOnce(&mut dyn FnMut(Progress) -> ControlFlow<()>) -> T) -> T {
@@ -86,22 +60,6 @@ mod tests {
     #[test]
     fn a_line_of_progress_is_overwritten_and_wiped_away() {
         assert_eq!(shown_with(Some(Duration::ZERO)), "\r\u{1b}[K 10 % weld\r\u{1b}[K 90 % build\r\u{1b}[K");
-    }
-
-    #[test]
-    fn what_takes_long_is_named_and_wiped_away() {
-        let mut sink = Vec::new();
-        let answer = named_on(&mut sink, Duration::ZERO, "reading", || {
-            std::thread::sleep(Duration::from_millis(200));
-            7
-        });
-        assert_eq!(
-            (answer, String::from_utf8(sink).expect("text").as_str()),
-            (7, "\r\u{1b}[Kreading\r\u{1b}[K")
-        );
-        let mut sink = Vec::new();
-        named_on(&mut sink, Duration::from_secs(3600), "reading", || ());
-        assert_eq!(sink, b"", "at once, and without waiting");
     }
 
     #[test]

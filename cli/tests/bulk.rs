@@ -69,6 +69,7 @@ fn smooth_takes_its_methods_and_boundaries() {
         &["cube.obj", "--method", "taubin", "--mu", "-0.53"],
         &["cube.obj", "--mu", "-0.53"],
         &["cube.obj", "--method", "cotan"],
+        &["cube.obj", "--method", "implicit"],
         &["sheet.obj", "--boundary", "fixed"],
         &["sheet.obj", "--boundary", "slide"],
         &["sheet.obj", "--boundary", "free"],

@@ -22,6 +22,37 @@ pub(crate) struct Carried {
     material_files: Vec<String>,
 }
 
+impl Carried {
+    /// Where the columns are.
+    pub(crate) fn columns(&self) -> Vec<(Kind, u32)> {
+        let on_vertices = [self.normals.map(|c| c.index), self.colors.map(|c| c.index)];
+        let on_corners = [self.corner_normals.map(|c| c.index), self.uvs.map(|c| c.index)];
+        let on_faces = [self.groups.map(|c| c.index)];
+        let of =
+            |kind, list: &[Option<u32>]| list.iter().flatten().map(move |&i| (kind, i)).collect::<Vec<_>>();
+        [of(Kind::Vertex, &on_vertices), of(Kind::Corner, &on_corners), of(Kind::Face, &on_faces)].concat()
+    }
+
+    /// Follows the columns on a kind of element to behind so many others.
+    pub(crate) fn renumber(&mut self, kind: Kind, by: u32) {
+        fn moved<K, T>(column: &mut Option<Column<K, T>>, by: u32) {
+            *column = column.map(|c| Column::new(c.index + by));
+        }
+        match kind {
+            Kind::Vertex => {
+                moved(&mut self.normals, by);
+                moved(&mut self.colors, by);
+            }
+            Kind::Corner => {
+                moved(&mut self.corner_normals, by);
+                moved(&mut self.uvs, by);
+            }
+            Kind::Edge => {}
+            Kind::Face => moved(&mut self.groups, by),
+        }
+    }
+}
+
 /// Why an attribute was not set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

@@ -56,8 +56,9 @@ pub(super) fn carry<'r>(pool: &Pool<'_>, new_of: impl Fn(usize) -> &'r [u32]) ->
         (own, other) => own.or(other),
     };
     let is_finite = |uv: [f64; 2]| uv.iter().all(|x| x.is_finite());
-    let mean = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * 0.5 + c * 0.5, b * 0.5 + d * 0.5];
-    let uvs = carried.corners(pool, &soup.corner_uvs, Attribute::TextureCoordinates, is_finite, mean);
+    let mix =
+        |[a, b]: [f64; 2], [c, d]: [f64; 2], at: f64| [a * (1.0 - at) + c * at, b * (1.0 - at) + d * at];
+    let uvs = carried.corners(pool, &soup.corner_uvs, Attribute::TextureCoordinates, is_finite, mix);
     carried.attributes.corner_uvs = uvs.map(|uvs| uvs.into_iter().map(|uv| uv.map(DVec2::from)).collect());
     carried.groups(pool);
     if !soup.material_files.is_empty() {
@@ -79,10 +80,10 @@ fn has_attributes(soup: &PolygonSoup) -> bool {
         || !soup.material_files.is_empty()
 }
 
-/// The mean of two normals, as long as they are on the average.
-fn between(a: DVec3, b: DVec3) -> DVec3 {
-    let mean = a * 0.5 + b * 0.5;
-    let turned = direction(mean) * (a.length() * 0.5 + b.length() * 0.5);
+/// What lies between two normals, `at` from one to the other, as long as they are there on the average.
+fn between(a: DVec3, b: DVec3, at: f64) -> DVec3 {
+    let mean = a * (1.0 - at) + b * at;
+    let turned = direction(mean) * (a.length() * (1.0 - at) + b.length() * at);
     if turned.is_finite() { turned } else { mean }
 }
 
@@ -111,7 +112,9 @@ impl Carried {
         self.attributes.corner_normals = Some(values).filter(|v| v.iter().any(Option::is_some));
         self.became.push((kind, Some(Attribute::CornerNormals)));
         let mut named = vec![false; given.len()];
-        pool.corner_source.iter().for_each(|&c| named[vertex_of_corner[c as usize] as usize] = true);
+        for c in soup_corners(pool) {
+            named[vertex_of_corner[c] as usize] = true;
+        }
         for v in (0..given.len()).filter(|&v| pool.vertex_of[v] != NONE && !named[v]) {
             self.lose(kind, LossReason::NoCorner, Element::Vertex(v as u32));
         }
@@ -127,7 +130,7 @@ impl Carried {
         }
         let is_finite = |v: usize| given[v].iter().all(|part| part.is_finite());
         let finite = |v: usize| if is_finite(v) { given[v] } else { [1.0; 4] };
-        let mean = |a: [f32; 4], b: [f32; 4]| std::array::from_fn(|i| a[i] * 0.5 + b[i] * 0.5);
+        let mean = |a: [f32; 4], b: [f32; 4], _| std::array::from_fn(|i| a[i] * 0.5 + b[i] * 0.5);
         let kept = at_vertices(pool, finite, mean);
         for v in (0..given.len()).filter(|&v| pool.vertex_of[v] != NONE) {
             if !is_finite(v) {
@@ -146,7 +149,7 @@ impl Carried {
         data: &Option<CornerData<T>>,
         kind: Attribute,
         is_finite: impl Fn(T) -> bool,
-        mean: impl Fn(T, T) -> T,
+        mix: impl Fn(T, T, f64) -> T,
     ) -> Option<Vec<Option<T>>> {
         let data = data.as_ref()?;
         let none = CornerData::<T>::NONE;
@@ -157,20 +160,20 @@ impl Carried {
             self.became.push((kind, None));
             return None;
         }
-        for &c in &pool.corner_source {
-            let index = data.indices[c as usize];
+        for c in soup_corners(pool) {
+            let index = data.indices[c];
             let reason = match data.values.get(index as usize) {
                 None if index != none => LossReason::NoSuchValue,
                 Some(value) if !is_finite(*value) => LossReason::NonFinite,
                 _ => continue,
             };
-            self.lose(kind, reason, Element::Corner(face_and_corner(&pool.soup.polygons, c as usize)));
+            self.lose(kind, reason, Element::Corner(face_and_corner(&pool.soup.polygons, c)));
         }
         let value = |c: usize| data.values.get(data.indices[c] as usize).copied().filter(|v| is_finite(*v));
-        let values = at_corners(pool, value, mean);
+        let values = at_corners(pool, value, mix);
         // Nothing is lost with a corner whose face is gone.
         let is_lost = values.iter().all(Option::is_none);
-        let had = pool.corner_source.iter().any(|&c| data.indices[c as usize] != none);
+        let had = soup_corners(pool).any(|c| data.indices[c] != none);
         if had {
             self.became.push((kind, Some(kind).filter(|_| !is_lost)));
         }
@@ -192,13 +195,19 @@ impl Carried {
     }
 }
 
+/// The soup's corners that are left.
+fn soup_corners<'p>(pool: &'p Pool<'_>) -> impl Iterator<Item = usize> + 'p {
+    let corners = pool.soup.polygons.corners().len();
+    pool.corner_source.iter().map(|&c| c as usize).filter(move |&c| c < corners)
+}
+
 /// The values of the pool's vertices, given those of the soup's.
-fn at_vertices<T: Copy>(pool: &Pool<'_>, value: impl Fn(usize) -> T, mean: impl Fn(T, T) -> T) -> Vec<T> {
+fn at_vertices<T: Copy>(pool: &Pool<'_>, value: impl Fn(usize) -> T, mix: impl Fn(T, T, f64) -> T) -> Vec<T> {
     let mut values: Vec<T> = pool.vertex_source.iter().map(|&v| value(v as usize)).collect();
     let first = values.len() - pool.parted.len();
     for (i, ends) in pool.parted.iter().enumerate() {
         let [a, b] = ends.map(|v| values[v as usize]);
-        values[first + i] = mean(a, b);
+        values[first + i] = mix(a, b, 0.5);
     }
     values
 }
@@ -207,15 +216,26 @@ fn at_vertices<T: Copy>(pool: &Pool<'_>, value: impl Fn(usize) -> T, mean: impl 
 fn at_corners<T: Copy>(
     pool: &Pool<'_>,
     value: impl Fn(usize) -> Option<T>,
-    mean: impl Fn(T, T) -> T,
+    mix: impl Fn(T, T, f64) -> T,
 ) -> Vec<Option<T>> {
-    let mut values: Vec<Option<T>> = pool.corner_source.iter().map(|&c| value(c as usize)).collect();
+    let corners = pool.soup.polygons.corners().len();
+    // Their ends are the soup's corners, or come before them.
+    let mut blended: Vec<Option<T>> = Vec::with_capacity(pool.blends.len());
+    let of = |blended: &[Option<T>], source: u32| match (source as usize).checked_sub(corners) {
+        None => value(source as usize),
+        Some(blend) => blended[blend],
+    };
+    for blend in &pool.blends {
+        let [a, b] = blend.ends.map(|source| of(&blended, source));
+        blended.push(a.zip(b).map(|(a, b)| mix(a, b, blend.at)));
+    }
+    let mut values: Vec<Option<T>> = pool.corner_source.iter().map(|&c| of(&blended, c)).collect();
     for &c in &pool.middles {
         let face = face_and_corner(&pool.polygons, c as usize)[0];
         // A middle stands behind the corner it was made at, and before the one that followed it.
         let next = crate::topology::next_corner(&pool.polygons, face, c as usize);
         let ends = values[c as usize - 1].zip(values[next]);
-        values[c as usize] = ends.map(|(a, b)| mean(a, b));
+        values[c as usize] = ends.map(|(a, b)| mix(a, b, 0.5));
     }
     values
 }

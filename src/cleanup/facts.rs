@@ -81,7 +81,26 @@ pub struct Facts {
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
-    let mut pool = Pool::new(soup, weld, &mut Control::none())?;
+    inspect_with(soup, weld, Control::none())
+}
+
+/// As [`inspect`], with a progress-and-cancel hook.
+///
+/// # Errors
+/// As [`inspect`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, PolygonSoup, Progress, cleanup::{CleanError, Weld, inspect_with}};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let refused = inspect_with(&PolygonSoup::default(), Weld::Exact, Control::new(&mut stop));
+/// assert!(matches!(refused, Err(CleanError::Cancelled(_))));
+/// ```
+pub fn inspect_with(soup: &PolygonSoup, weld: Weld, mut control: Control<'_>) -> Result<Facts, CleanError> {
+    control.report("weld", 0.0)?;
+    let mut pool = Pool::new(soup, weld, &mut control)?;
+    control.report("match edges", 0.4)?;
     let count = |kind| pool.report.count(kind);
     let mut facts = Facts {
         vertices: soup.positions.len(),
@@ -106,8 +125,10 @@ pub fn inspect(soup: &PolygonSoup, weld: Weld) -> Result<Facts, CleanError> {
 
     let indexed = pool.lend(Attributes::NONE);
     let topology = indexed.topology();
+    control.report("join components", 0.6)?;
     let ((components, pieces), pinched) =
         both(|| (topology.components().1, topology.boundary_pieces()), || topology.pinched_vertices().len());
+    control.report("measure", 0.8)?;
     let ((duplicates, measures), orientable) = both(
         || (topology.duplicate_faces().len(), measures(indexed.positions(), indexed.polygons())),
         || topology.orientable().is_ok(),

@@ -2,9 +2,11 @@
 
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
-use super::weld::{propose_tolerance, weld};
-use super::{CleanError, Weld};
+use super::tolerance::{ProposedTolerance, propose};
+use super::weld::weld;
+use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
+use crate::geometry::distance;
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Record, Relation, Report, Step, StepSummary};
 use crate::{Cancelled, Control, IndexedMesh, MAX_ELEMENTS, PolygonSoup, Polygons};
@@ -17,8 +19,10 @@ pub(super) struct Pool<'s> {
     pub(super) polygons: Polygons,
     /// For each face the soup's face it was made of.
     pub(super) face_source: Vec<u32>,
-    /// For each corner the soup's corner it was.
+    /// For each corner the soup's corner it was; from the number of the soup's corners on, one of `blends`.
     pub(super) corner_source: Vec<u32>,
+    /// Corners that were put into edges.
+    pub(super) blends: Vec<Blend>,
     /// For each vertex the lowest of the soup's vertices in it: ascending.
     pub(super) vertex_source: Vec<u32>,
     /// For each of the soup's vertices the vertex it is in, or [`NONE`] if it was dropped.
@@ -27,13 +31,30 @@ pub(super) struct Pool<'s> {
     pub(super) flipped: Vec<bool>,
     /// The last vertices are in the middle between these: edges that were parted.
     pub(super) parted: Vec<[u32; 2]>,
+    /// The ends of edges that were cut because the surface cannot be oriented.
+    pub(super) cut: Vec<u32>,
     /// The corners at those vertices, ascending.
     pub(super) middles: Vec<u32>,
     pub(super) report: Report,
     /// The tolerance of the weld; `None` if there was none.
     pub(super) tolerance: Option<f64>,
+    /// The soup's vertices that stood where they stand in the soup until they were stitched: ascending.
+    pub(super) stitched: Vec<u32>,
+    /// What was proposed, if the tolerance was.
+    pub(super) proposed: Option<ProposedTolerance>,
     /// Faces that were dropped or changed because they named a vertex twice.
     pub(super) degenerate_faces: usize,
+}
+
+/// A corner that was put into an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blend {
+    /// The soup's vertex that it names.
+    pub(super) vertex: u32,
+    /// The sources of the corners at the ends of the edge.
+    pub(super) ends: [u32; 2],
+    /// How far it is from the first to the second.
+    pub(super) at: f64,
 }
 
 /// Why a face of the soup does not enter the pool.
@@ -64,10 +85,36 @@ impl<'s> Pool<'s> {
         let tolerance = match how {
             Weld::None => None,
             Weld::Exact => Some(0.0),
-            Weld::Auto => Some(propose_tolerance(soup)),
+            Weld::Auto => {
+                let exact = Self::new(soup, Weld::Exact, &mut control.part(0.0, 0.5))?;
+                control.report("propose a tolerance", 0.2)?;
+                let (proposed, merged) = propose(&exact, &mut control.part(0.2, 0.3))?;
+                return match merged {
+                    None => Ok(Self { proposed: Some(proposed), ..exact }),
+                    Some(merged) => {
+                        let named = |v: u32| {
+                            if v == NONE { v } else { exact.vertex_source[merged[v as usize] as usize] }
+                        };
+                        let merged_into = exact.vertex_of.iter().map(|&v| named(v)).collect();
+                        drop(exact);
+                        let pool = Self::welded(soup, merged_into, Some(proposed.tolerance), control)?;
+                        Ok(Self { proposed: Some(proposed), ..pool })
+                    }
+                };
+            }
             Weld::Within(t) => Some(t),
         };
         let merged_into = weld(&soup.positions, tolerance, control)?;
+        Self::welded(soup, merged_into, tolerance, control)
+    }
+
+    /// The pool of a soup of which each vertex is merged into the given one.
+    fn welded(
+        soup: &'s PolygonSoup,
+        merged_into: Vec<u32>,
+        tolerance: Option<f64>,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
         let mut pool = Self {
             soup,
             positions: Vec::new(),
@@ -78,9 +125,13 @@ impl<'s> Pool<'s> {
             vertex_of: merged_into,
             flipped: Vec::new(),
             parted: Vec::new(),
+            cut: Vec::new(),
             middles: Vec::new(),
+            blends: Vec::new(),
+            stitched: Vec::new(),
             report: Report::default(),
             tolerance,
+            proposed: None,
             degenerate_faces: 0,
         };
         let dropped = pool.number_vertices();
@@ -91,11 +142,11 @@ impl<'s> Pool<'s> {
             // Cutting faces into triangles can triple their corners.
             return Err(CleanError::TooLarge { elements });
         }
-        let step = |step, changed, tolerance| StepSummary { step, changed, tolerance };
         if pool.tolerance.is_some() {
-            pool.report.steps.push(step(Step::Weld, merged, pool.tolerance));
+            let weld = StepSummary::new(Step::Weld, merged);
+            pool.report.steps.push(StepSummary { tolerance: pool.tolerance, ..weld });
         }
-        pool.report.steps.push(step(Step::RepairPolygons, repairs.len(), None));
+        pool.report.steps.push(StepSummary::new(Step::RepairPolygons, repairs.len()));
         pool.report.records.extend(repairs);
         Ok(pool)
     }
@@ -154,7 +205,7 @@ impl<'s> Pool<'s> {
             };
             if let Some(kind) = kind {
                 self.degenerate_faces += 1;
-                repairs.push(Record { step: Step::RepairPolygons, kind, element, place: self.middle(face) });
+                repairs.push(Record::new(Step::RepairPolygons, kind, element, self.middle(face)));
             }
             for piece in pieces.iter() {
                 self.polygons.push(piece.iter().map(|&i| welded[i as usize]));
@@ -162,12 +213,12 @@ impl<'s> Pool<'s> {
                 self.face_source.push(f as u32);
             }
         }
-        self.report.steps.push(StepSummary { step: Step::DropInvalid, changed: dropped, tolerance: None });
+        self.report.steps.push(StepSummary::new(Step::DropInvalid, dropped));
         Ok(repairs)
     }
 
     pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {
-        self.report.records.push(Record { step, kind, element, place });
+        self.report.records.push(Record::new(step, kind, element, place));
     }
 
     /// The mean of a soup face's finite corners.
@@ -185,7 +236,8 @@ impl<'s> Pool<'s> {
 
     /// The soup's vertex that a corner of the pool named there.
     pub(super) fn named_at(&self, corner: usize) -> u32 {
-        self.soup.polygons.corners()[self.corner_source[corner] as usize]
+        let (source, corners) = (self.corner_source[corner] as usize, self.soup.polygons.corners());
+        corners.get(source).copied().unwrap_or_else(|| self.blends[source - corners.len()].vertex)
     }
 
     /// Removes faces.
@@ -210,23 +262,43 @@ impl<'s> Pool<'s> {
         Relation::from_pairs(self.soup.polygons.len(), self.face_source.len(), pairs)
     }
 
-    /// Records the merges that moved a corner, in front of all records of later steps. `settled` gives the soup's
-    /// vertices and the positions they ended at.
+    /// Records the merges that moved a corner, in front of all records of later steps. `ended` gives the positions at
+    /// which the soup's vertices ended.
     pub(super) fn record_merges(&mut self, ended: impl Fn(u32) -> Option<DVec3>) {
-        if !self.tolerance.is_some_and(|t| t > 0.0) {
+        if !self.tolerance.is_some_and(|t| t > 0.0) && self.stitched.is_empty() {
             return;
         }
         let soup = self.soup;
         let vertices = soup.positions.iter().zip(0u32..).filter(|(p, _)| p.is_finite());
-        let moved = vertices.filter(|&(&p, v)| ended(v).is_some_and(|q| q != p));
-        let merges = moved.map(|(&p, v)| Record {
-            step: Step::Weld,
-            kind: Kind::MergedVertex,
-            element: Element::Vertex(v),
-            place: Some(p),
-        });
-        let before = self.report.records.partition_point(|r| r.step < Step::Weld);
-        self.report.records.splice(before..before, merges.collect::<Vec<_>>());
+        let mut farthest = 0.0f64;
+        let [mut welded, mut stitched] = [Vec::new(), Vec::new()];
+        for (&p, v) in vertices {
+            let Some(q) = ended(v).filter(|&q| q != p) else { continue };
+            let record = |step| Record::new(step, Kind::MergedVertex, Element::Vertex(v), Some(p));
+            if self.stitched.binary_search(&v).is_ok() {
+                stitched.push(record(Step::Stitch));
+            } else {
+                farthest = farthest.max(distance(p, q));
+                welded.push(record(Step::Weld));
+            }
+        }
+        for (step, merges) in [(Step::Weld, welded), (Step::Stitch, stitched)] {
+            let before = self.report.records.partition_point(|r| r.step < step);
+            self.report.records.splice(before..before, merges);
+        }
+        for step in self.report.steps.iter_mut().filter(|s| s.step == Step::Weld) {
+            step.moved = farthest;
+        }
+    }
+
+    /// How far a stitch may move anything: the tolerance of the weld, or how far apart naked edges that belong together
+    /// were found to lie, and at least the noise of single precision at the largest coordinate. `None` if no weld was
+    /// asked for: then vertices at one place are meant to be apart.
+    pub(super) fn reach(&self) -> Option<f64> {
+        let tolerance = self.tolerance?;
+        let largest = self.positions.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
+        let noise = largest * 4.0 / f64::from(1 << 24);
+        Some(self.proposed.map_or(tolerance, |p| p.reach.max(tolerance)).max(noise))
     }
 
     /// The soup's attributes on the vertices as they were welded.
@@ -248,8 +320,17 @@ impl<'s> Pool<'s> {
         (self.positions, self.polygons, _) = indexed.into_parts();
     }
 
+    /// Where its elements come from, moved out but for faces, which the maps need.
+    pub(super) fn sources(&mut self) -> Sources {
+        Sources {
+            corners: std::mem::take(&mut self.corner_source),
+            faces: self.face_source.clone(),
+            middles: std::mem::take(&mut self.middles),
+        }
+    }
+
     /// The account of a pool whose vertices stand as they were welded, at these positions.
-    pub(super) fn account(mut self, positions: &[DVec3]) -> (Report, Maps) {
+    pub(super) fn account(&mut self, positions: &[DVec3]) -> (Report, Maps) {
         let maps = Maps {
             vertices: Relation::from_map(
                 &self.vertex_of.iter().map(|&v| Some(v).filter(|&v| v != NONE)).collect::<Vec<_>>(),
@@ -259,6 +340,6 @@ impl<'s> Pool<'s> {
         };
         let of = std::mem::take(&mut self.vertex_of);
         self.record_merges(|v| positions.get(of[v as usize] as usize).copied());
-        (self.report, maps)
+        (std::mem::take(&mut self.report), maps)
     }
 }

@@ -28,6 +28,8 @@ struct Fans {
     source: Vec<u32>,
     /// For each fan whether it shares one of the soup's vertices with another.
     shares: Vec<bool>,
+    /// For each fan whether its corners name several of the soup's vertices.
+    is_merged: Vec<bool>,
 }
 
 impl Fans {
@@ -36,14 +38,21 @@ impl Fans {
         let pairs = mates.iter().enumerate().filter(|&(c, &m)| m != NONE && m as usize > c);
         let pairs = pairs.map(|(c, &m)| (c, m as usize));
         let (of, count) = fan_roots(&pool.polygons, |c| face_of.face(c), pairs).labels();
-        let mut fans =
-            Self { of, vertex: vec![NONE; count], source: vec![NONE; count], shares: vec![false; count] };
+        let mut fans = Self {
+            of,
+            vertex: vec![NONE; count],
+            source: vec![NONE; count],
+            shares: vec![false; count],
+            is_merged: vec![false; count],
+        };
         // The first fan to name each of the soup's vertices.
         let mut owner = vec![NONE; pool.soup.positions.len()];
         for (c, &fan) in fans.of.iter().enumerate() {
             let source = pool.named_at(c);
             fans.vertex[fan as usize] = pool.polygons.corners()[c];
-            fans.source[fan as usize] = fans.source[fan as usize].min(source);
+            let lowest = &mut fans.source[fan as usize];
+            fans.is_merged[fan as usize] |= *lowest != NONE && *lowest != source;
+            *lowest = source.min(*lowest);
             match owner[source as usize] {
                 NONE => owner[source as usize] = fan,
                 first if first != fan => {
@@ -104,6 +113,10 @@ impl Fans {
 
         let mut number_of_fan = vec![NONE; self.vertex.len()];
         let mut number_of_vertex = vec![NONE; pool.positions.len()];
+        // What was cut stays at one place. A merge that is taken back goes where it was; but where two of the soup's
+        // vertices stay merged, they stay where the weld put them, within its tolerance.
+        let mut is_cut = vec![false; pool.positions.len()];
+        pool.cut.iter().for_each(|&v| is_cut[v as usize] = true);
         let mut positions = Vec::with_capacity(order.len());
         let mut sources = Vec::with_capacity(order.len());
         for (number, &(source, v, fan)) in order.iter().enumerate() {
@@ -111,8 +124,11 @@ impl Fans {
             if fan != NONE {
                 number_of_fan[fan as usize] = number;
             }
-            if fan == first_fan[v as usize] {
+            let is_first = fan == first_fan[v as usize];
+            if is_first {
                 number_of_vertex[v as usize] = number;
+            }
+            if is_first || is_cut[v as usize] || self.is_merged[fan as usize] {
                 positions.push(pool.positions[v as usize]);
             } else {
                 positions.push(pool.soup.positions[source as usize]);

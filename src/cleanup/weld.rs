@@ -2,34 +2,10 @@
 
 use super::CleanError;
 use crate::matching::NONE;
-use crate::{Cancelled, Control, PolygonSoup};
+use crate::{Cancelled, Control};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::collections::HashMap;
-
-/// Proposes a weld tolerance from the data: a few units in the last place of single precision at the largest
-/// coordinate (the noise of a program or file format that stores `f32`), but no more than a quarter of the shortest
-/// edge that has a length. Zero, which means an exact weld, if there is no such edge. O(corners).
-///
-/// # Examples
-/// ```
-/// use meshwright::{PolygonSoup, Polygons, cleanup::propose_tolerance, glam::DVec3};
-/// let points = vec![DVec3::ZERO, DVec3::X * 100.0, DVec3::Y * 100.0];
-/// let soup = PolygonSoup::new(points, Polygons::from_triangles(&[[0, 1, 2]]));
-/// assert!((2e-5..3e-5).contains(&propose_tolerance(&soup)));
-/// ```
-pub fn propose_tolerance(soup: &PolygonSoup) -> f64 {
-    let finite = soup.positions.iter().filter(|p| p.is_finite());
-    let largest = finite.fold(0.0f64, |m, p| m.max(p.abs().max_element()));
-    let noise = largest * 4.0 / f64::from(1 << 24);
-    let at = |v: u32| soup.positions.get(v as usize).copied().filter(|p| p.is_finite());
-    let edges = soup.polygons.iter().flat_map(|f| {
-        let next = f.iter().cycle().skip(1);
-        f.iter().zip(next).filter_map(|(&a, &b)| Some(at(a)?.distance(at(b)?)))
-    });
-    let shortest = edges.filter(|&length| length > 0.0).fold(f64::INFINITY, f64::min);
-    if shortest.is_finite() { noise.min(shortest / 4.0) } else { 0.0 }
-}
 
 /// For each position the lowest index it is merged into (itself if it stays); [`NONE`] if it is not finite.
 pub(super) fn weld(
@@ -124,11 +100,12 @@ pub(super) fn is_near(p: DVec3, q: DVec3, tolerance: f64) -> bool {
 }
 
 /// The tutorial's greedy rule (each vertex joins the lowest kept vertex nearer than the tolerance, and is kept if there
-/// is none) in linear time: kept vertices are at least a tolerance apart, so a grid cell twice that wide holds few, and
-/// all that are near a point lie in the cells of its corners `x - t`, `x` and `x + t`: eight at most, but for rounding.
+/// is none) in linear time: kept vertices are at least a tolerance apart, so a grid cell four times that wide holds few,
+/// and all that are near a point lie in the cells of its corners `x - t`, `x` and `x + t`: eight at most, but for
+/// rounding, and fewer than four on the average.
 fn within(positions: &[DVec3], tolerance: f64, control: &mut Control<'_>) -> Result<Vec<u32>, Cancelled> {
     let cell = |x: f64| {
-        let cell = (x / tolerance * 0.5).floor();
+        let cell = (x / tolerance * 0.25).floor();
         // So far out that the tolerance is less than a bit of the coordinate: equal coordinates only.
         if cell.is_finite() { cell.to_bits() } else { x.to_bits() }
     };
@@ -176,7 +153,6 @@ fn within(positions: &[DVec3], tolerance: f64, control: &mut Control<'_>) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Polygons;
     use proptest::prelude::*;
 
     /// The tutorial's loop.
@@ -238,17 +214,5 @@ mod tests {
     fn a_chain_of_near_points_is_not_pulled_together() {
         let chain: Vec<DVec3> = (0..5).map(|i| DVec3::X * f64::from(i) * 0.75).collect();
         assert_eq!(weld(&chain, Some(1.0), &mut Control::none()).unwrap(), [0, 0, 2, 2, 4]);
-    }
-
-    #[test]
-    fn the_proposed_tolerance_is_noise_and_never_reaches_an_edge() {
-        let mut soup = PolygonSoup::new(
-            vec![DVec3::ZERO, DVec3::X * 100.0, DVec3::Y],
-            Polygons::from_triangles(&[[0, 1, 2]]),
-        );
-        assert!((propose_tolerance(&soup) / 100.0 - 2.4e-7).abs() < 1e-8);
-        soup.positions[1] = DVec3::X * 1e-9;
-        assert!(propose_tolerance(&soup) < 0.3e-9);
-        assert_eq!(propose_tolerance(&PolygonSoup::default()), 0.0);
     }
 }

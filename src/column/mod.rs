@@ -15,9 +15,11 @@
 //!
 //! A mesh without columns pays one comparison for each element that an operator makes or merges.
 
+mod derive;
 mod rule;
 mod store;
 
+pub(crate) use derive::{Origin, Walk};
 pub use rule::{Event, Interpolate, Rule};
 pub(crate) use store::{Columns, Dense, Kind, Store};
 

@@ -12,7 +12,8 @@ pub enum Event {
     Split,
     /// It took in others: the first source is its own value.
     Merge,
-    /// A vertex was moved by [`set_position`](crate::Mesh::set_position) or a collapse; the only source is its own value.
+    /// A vertex was moved by [`set_position`](crate::Mesh::set_position), a collapse or a bulk operation; the only source is
+    /// its own value.
     Move,
 }
 
@@ -69,6 +70,11 @@ impl<T> fmt::Debug for Rule<T> {
 }
 
 impl<T> Rule<T> {
+    /// Whether it looks at moves.
+    pub(super) fn sees_moves(&self) -> bool {
+        matches!(self.0, How::Custom(_))
+    }
+
     /// The value of the heaviest source; of the first among equals. For names, materials and marks.
     pub fn keep() -> Self {
         Self(How::Keep)

@@ -1,7 +1,7 @@
 //! How columns are kept: dense, by slot, behind an object-safe face for the operators.
 
 use super::rule::How;
-use super::{Event, Rule, Value};
+use super::{Event, Rule, Value, Walk};
 use smallvec::SmallVec;
 use std::any::Any;
 
@@ -18,12 +18,16 @@ pub enum Kind {
     Face,
 }
 
+impl Kind {
+    pub(crate) const ALL: [Self; 4] = [Self::Vertex, Self::Corner, Self::Edge, Self::Face];
+}
+
 /// One column: a value for every slot, dead ones included (what they hold means nothing).
 #[derive(Clone)]
 pub(crate) struct Store<T> {
-    values: Vec<T>,
-    default: T,
-    rule: Rule<T>,
+    pub(super) values: Vec<T>,
+    pub(super) default: T,
+    pub(super) rule: Rule<T>,
     /// Values that were overwritten since the first checkpoint, the last on top.
     old: Vec<T>,
 }
@@ -50,7 +54,7 @@ impl<T: Value> Store<T> {
         Some(std::mem::replace(self.values.get_mut(slot as usize)?, value))
     }
 
-    fn mixed(&self, event: Event, sources: &[(u32, f64)]) -> T {
+    pub(super) fn mixed(&self, event: Event, sources: &[(u32, f64)]) -> T {
         let at = |i: usize| &self.values[sources[i].0 as usize];
         match &self.rule.0 {
             How::Reset => self.default.clone(),
@@ -89,6 +93,8 @@ pub(crate) trait Dense: Send + Sync {
     fn reset(&mut self, slot: u32);
     /// Gives a slot the value that the rule makes of the sources.
     fn mix(&mut self, event: Event, into: u32, sources: &[(u32, f64)]);
+    /// A column of the same rule and default for the elements of another mesh.
+    fn derived(&self, count: usize, walk: &Walk<'_>) -> Box<dyn Dense>;
     /// Gives a slot the value of another, whatever the rule.
     fn copy(&mut self, from: u32, into: u32);
     /// Exchanges two values.
@@ -137,6 +143,10 @@ impl<T: Value> Dense for Store<T> {
         self.values[into as usize] = self.mixed(event, sources);
     }
 
+    fn derived(&self, count: usize, walk: &Walk<'_>) -> Box<dyn Dense> {
+        Box::new(self.derived_store(count, walk))
+    }
+
     fn copy(&mut self, from: u32, into: u32) {
         self.values[into as usize] = self.values[from as usize].clone();
     }
@@ -150,7 +160,7 @@ impl<T: Value> Dense for Store<T> {
     }
 
     fn sees_moves(&self) -> bool {
-        matches!(self.rule.0, How::Custom(_))
+        self.rule.sees_moves()
     }
 
     fn remember(&mut self, slot: u32) {
@@ -171,7 +181,7 @@ impl<T: Value> Dense for Store<T> {
 /// All columns of a mesh. A removed one leaves its place empty, so that no key ever means another column.
 #[derive(Default)]
 pub(crate) struct Columns {
-    kinds: [Vec<Option<Box<dyn Dense>>>; 4],
+    pub(super) kinds: [Vec<Option<Box<dyn Dense>>>; 4],
 }
 
 impl Clone for Columns {

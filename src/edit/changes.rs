@@ -3,7 +3,7 @@
 use super::Few;
 use crate::report::{Maps, Relation};
 use crate::{EdgeKey, FaceKey, Mesh, VertexKey};
-use std::collections::BTreeMap;
+use smallvec::SmallVec;
 
 /// One thing that an edit did. An edit tells its births before its deaths.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -152,6 +152,20 @@ impl Mesh {
         }
     }
 
+    /// Does edits, and tells what they did; whoever listens hears it too.
+    pub(crate) fn traced<T>(&mut self, edits: impl FnOnce(&mut Self) -> T) -> (T, Vec<Change>) {
+        let is_heard = self.changes.is_some();
+        self.record_changes();
+        let heard = |mesh: &Self| mesh.changes.as_ref().map_or(0, |c| c.list.len());
+        let from = heard(self);
+        let result = edits(self);
+        let told = match (&self.changes, is_heard) {
+            (Some(changes), true) => changes.list.get(from..).unwrap_or_default().to_vec(),
+            _ => self.stop_recording(),
+        };
+        (result, told)
+    }
+
     /// The keys of vertices and faces in the order of [`to_indexed`](Self::to_indexed): what [`Lineage::maps`] numbers by.
     pub fn numbering(&self) -> Numbering {
         Numbering {
@@ -207,7 +221,7 @@ impl Lineage {
     }
 
     /// The relation of vertices and faces, from the numbering before the first change to that after the last: an element
-    /// made from others is related to them, and one that went into another to that. O(n log n).
+    /// made from others is related to them, and one that went into another to that. O(n).
     pub fn maps(&self, before: &Numbering, after: &Numbering) -> Maps {
         let mut vertices = Roots::new(&before.vertices);
         let mut faces = Roots::new(&before.faces);
@@ -241,36 +255,60 @@ impl Extend<Change> for Lineage {
 
 /// For each live key the old elements it holds.
 struct Roots<K> {
-    of: BTreeMap<K, Vec<u32>>,
+    /// By slot, the key that is live there.
+    of: Vec<Option<(K, SmallVec<[u32; 2]>)>>,
 }
 
-impl<K: Copy + Ord> Roots<K> {
+impl<K: slotmap::Key> Roots<K> {
     fn new(old: &[K]) -> Self {
-        Self { of: old.iter().zip(0..).map(|(&k, i)| (k, vec![i])).collect() }
+        let mut roots = Self { of: Vec::new() };
+        old.iter().zip(0..).for_each(|(&k, i)| roots.put(k, SmallVec::from_slice(&[i])));
+        roots
+    }
+
+    fn slot(key: K) -> usize {
+        key.data().as_ffi() as u32 as usize
+    }
+
+    fn get(&self, key: K) -> &[u32] {
+        match self.of.get(Self::slot(key)) {
+            Some(Some((live, roots))) if *live == key => roots,
+            _ => &[],
+        }
+    }
+
+    fn put(&mut self, key: K, roots: SmallVec<[u32; 2]>) {
+        let slot = Self::slot(key);
+        if slot >= self.of.len() {
+            self.of.resize(slot + 1, None);
+        }
+        self.of[slot] = Some((key, roots));
     }
 
     fn born(&mut self, key: K, from: &[K]) {
-        let mut roots: Vec<u32> = from.iter().filter_map(|k| self.of.get(k)).flatten().copied().collect();
-        roots.sort_unstable();
-        roots.dedup();
-        self.of.insert(key, roots);
+        let roots = from.iter().flat_map(|&k| self.get(k)).copied().collect();
+        self.put(key, sorted(roots));
     }
 
     fn died(&mut self, key: K, into: Option<K>) {
-        let roots = self.of.remove(&key).unwrap_or_default();
+        let mut roots = SmallVec::from_slice(self.get(key));
+        if let Some(entry) = self.of.get_mut(Self::slot(key)) {
+            entry.take_if(|(live, _)| *live == key);
+        }
         if let Some(into) = into {
-            let all = self.of.entry(into).or_default();
-            all.extend(roots);
-            all.sort_unstable();
-            all.dedup();
+            roots.extend_from_slice(self.get(into));
+            self.put(into, sorted(roots));
         }
     }
 
     fn relation(&self, old: usize, new: &[K]) -> Relation {
-        let pairs = new.iter().zip(0..).flat_map(|(k, new)| {
-            let roots = self.of.get(k).map(Vec::as_slice).unwrap_or_default();
-            roots.iter().map(move |&old| (old, new))
-        });
+        let pairs = new.iter().zip(0..).flat_map(|(&k, new)| self.get(k).iter().map(move |&old| (old, new)));
         Relation::from_pairs(old, new.len(), pairs)
     }
+}
+
+fn sorted(mut roots: SmallVec<[u32; 2]>) -> SmallVec<[u32; 2]> {
+    roots.sort_unstable();
+    roots.dedup();
+    roots
 }

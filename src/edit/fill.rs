@@ -1,5 +1,6 @@
-//! Filling a hole with one face.
+//! Filling a hole with one face; the links of a hole filled with triangles.
 
+use crate::column::Kind;
 use crate::{FaceKey, HalfedgeKey, Mesh};
 
 /// Why a hole was not filled.
@@ -19,7 +20,8 @@ pub enum FillHoleError {
 
 impl Mesh {
     /// Fills the hole along a boundary loop with one face, whose first corner is where the half-edge starts. No vertex
-    /// or edge is made; [`triangulate_face`](Self::triangulate_face) or [`poke_face`](Self::poke_face) cut it up.
+    /// or edge is made; [`triangulate_face`](Self::triangulate_face) or [`poke_face`](Self::poke_face) cut it up, and
+    /// [`triangulate_hole`](Self::triangulate_hole) fills it with triangles of least area.
     ///
     /// ```text
     ///   ●───●───●        ●───●───●
@@ -47,15 +49,8 @@ impl Mesh {
     /// ```
     pub fn fill_hole(&mut self, h: HalfedgeKey) -> Result<FaceKey, FillHoleError> {
         let first = self.plan_fill(h)?;
-        let f = self.new_face(first, None);
-        let mut h = first;
-        loop {
-            self.set_face(h, f);
-            h = self.next[h as usize];
-            if h == first {
-                return Ok(self.faces.key(f));
-            }
-        }
+        let f = self.fill_with_face(first);
+        Ok(self.faces.key(f))
     }
 
     /// Whether [`fill_hole`](Self::fill_hole) would be done.
@@ -75,5 +70,36 @@ impl Mesh {
             Some(f) => Err(FillHoleError::Duplicate(self.faces.key(f))),
             None => Ok(first),
         }
+    }
+    fn fill_with_face(&mut self, first: u32) -> u32 {
+        let f = self.new_face(first, None);
+        let mut h = first;
+        loop {
+            self.set_face(h, f);
+            h = self.next[h as usize];
+            if h == first {
+                return f;
+            }
+        }
+    }
+
+    /// Fills a boundary loop with triangles, given by the numbers of their corners along the loop: each but the last is an
+    /// ear of what the ones before left, its tip in the middle. With one face if there are none. The group is that of all.
+    ///
+    /// The caller has made sure that no diagonal is an edge, and that the face does not exist.
+    pub(crate) fn fill_loop(&mut self, first: u32, ears: &[[u32; 3]], group: Option<u32>) -> Vec<FaceKey> {
+        // The half-edge of what is left that starts at each corner.
+        let mut at: Vec<u32> = self.loop_slots(first).collect();
+        let f = self.fill_with_face(first);
+        if let (Some(group), Some(column)) = (group, self.carried.groups) {
+            self.write_value(Kind::Face, column.index, f, group);
+        }
+        let mut faces = vec![self.faces.key(f)];
+        for &[p, _, q] in ears.iter().rev().skip(1).rev() {
+            let (face, diagonal) = self.cut_face(at[q as usize], at[p as usize]);
+            at[p as usize] = 2 * diagonal + 1;
+            faces.push(self.faces.key(face));
+        }
+        faces
     }
 }

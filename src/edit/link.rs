@@ -232,39 +232,39 @@ impl Mesh {
     }
 
     /// Outgoing half-edge slots of a vertex, gathered before links change.
-    pub(super) fn spokes(&self, v: u32) -> Slots {
+    pub(crate) fn spokes(&self, v: u32) -> Slots {
         self.outgoing_slots(v).collect()
     }
 
     /// The half-edge slot from one vertex to another.
     #[inline]
-    pub(super) fn find_slot(&self, a: u32, b: u32) -> Option<u32> {
+    pub(crate) fn find_slot(&self, a: u32, b: u32) -> Option<u32> {
         self.outgoing_slots(a).find(|&h| self.origin[h as usize ^ 1] == b)
     }
 
     #[inline]
-    pub(super) fn target_slot(&self, h: u32) -> u32 {
+    pub(crate) fn target_slot(&self, h: u32) -> u32 {
         self.origin[h as usize ^ 1]
     }
 
     #[inline]
-    pub(super) fn is_open(&self, h: u32) -> bool {
+    pub(crate) fn is_open(&self, h: u32) -> bool {
         self.face[h as usize] == NONE
     }
 
-    pub(super) fn is_triangle(&self, h: u32) -> bool {
+    pub(crate) fn is_triangle(&self, h: u32) -> bool {
         let next = self.next[h as usize];
         self.face[h as usize] != NONE && self.next[next as usize] == self.prev[h as usize]
     }
 
-    pub(super) fn is_open_vertex(&self, v: u32) -> bool {
+    pub(crate) fn is_open_vertex(&self, v: u32) -> bool {
         let h = self.vertex_halfedge[v as usize];
         h != NONE && self.is_open(h)
     }
 
     /// Whether the face of `h` has the same corners as all its neighbours together: one face across all its edges, of the
     /// same degree. Then the two close each other off (M17).
-    pub(super) fn is_closed_off(&self, loop_: impl Iterator<Item = u32> + Clone) -> Option<u32> {
+    pub(crate) fn is_closed_off(&self, loop_: impl Iterator<Item = u32> + Clone) -> Option<u32> {
         let mut across = loop_.clone().map(|h| self.face[h as usize ^ 1]);
         let other = across.next().filter(|&f| f != NONE)?;
         let same = across.all(|f| f == other)

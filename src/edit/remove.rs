@@ -224,6 +224,20 @@ impl Mesh {
         corners.find(|&v| fans(v) > 1).map(|v| self.vertices.key(v))
     }
 
+    /// Removes all faces of a component, with its edges and vertices.
+    pub(crate) fn remove_part(&mut self, faces: &[u32]) {
+        let vertices = self.take_faces(faces).isolated;
+        for v in vertices.iter().filter_map(|&v| self.vertex_slot(v)).collect::<Slots>() {
+            self.drop_vertex(v, None);
+        }
+    }
+
+    /// Removes a vertex that has no face.
+    pub(crate) fn remove_isolated(&mut self, v: u32) {
+        debug_assert_eq!(self.vertex_halfedge[v as usize], NONE);
+        self.drop_vertex(v, None);
+    }
+
     /// Removes faces whose going pinches no vertex.
     fn take_faces(&mut self, faces: &[u32]) -> Removed {
         let corners = self.corners_of(faces);

@@ -26,7 +26,9 @@ pub struct TriangulatedFace {
 
 impl Mesh {
     /// Cuts a face into triangles by the one rule that the whole crate uses: ears in the plane of its area vector, or for
-    /// a quad the shorter diagonal that lies inside. A quad whose diagonal is an edge already takes the other one.
+    /// a quad the shorter diagonal that lies inside. A quad whose diagonal is an edge already takes the other one; a larger
+    /// face of which a diagonal is an edge already is refused, as any other cut would not be that of the rule: part the
+    /// edge with [`split_edge`](Self::split_edge) first, or cut by hand with [`split_face`](Self::split_face).
     ///
     /// ```text
     ///   ●───────●        ●───────●

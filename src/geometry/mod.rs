@@ -1,10 +1,12 @@
 //! Geometry on the indexed form and the mesh: the shared triangulation rule, normals, measures; transforms, weld,
-//! subdivision and smoothing in bulk.
+//! subdivision, smoothing and the filling of holes in bulk.
 
 pub(crate) mod deform;
+pub(crate) mod fill;
 pub(crate) mod measure;
 pub(crate) mod normals;
 pub(crate) mod reduce;
+pub(crate) mod slivers;
 pub(crate) mod smooth;
 pub(crate) mod subdivide;
 pub(crate) mod transform;

@@ -20,6 +20,8 @@ pub(crate) struct Triangulator {
     triangles: Vec<[u32; 3]>,
     next: Vec<u32>,
     prev: Vec<u32>,
+    /// Within this of the line between its neighbours, rounding may have put a straight corner.
+    noise: f64,
 }
 
 impl Triangulator {
@@ -61,6 +63,7 @@ impl Triangulator {
         let normal = direction(double_area_vector(points()));
         let (x, y) = if normal == DVec3::ZERO { (DVec3::X, DVec3::Y) } else { normal.any_orthonormal_pair() };
         let origin = points().next().unwrap_or_default();
+        self.noise = noise(points());
         // glam's pair (x, y) is right-handed with the normal.
         self.plane = points().map(|p| DVec2::new((p - origin).dot(x), (p - origin).dot(y))).collect();
     }
@@ -69,7 +72,7 @@ impl Triangulator {
         let n = self.plane.len();
         self.next = (1..n as u32).chain([0]).collect();
         self.prev = [n as u32 - 1].into_iter().chain(0..n as u32 - 1).collect();
-        let mut reflex: Vec<bool> = (0..n).map(|i| self.turn(i) <= 0.0).collect();
+        let mut reflex: Vec<bool> = (0..n).map(|i| !self.is_convex(i)).collect();
         let grid = Grid::new(&self.plane, &reflex);
         // Some tens of times what polygons from life take; without a bound one file could take minutes.
         let mut budget = 128 * n + 4096;
@@ -90,7 +93,7 @@ impl Triangulator {
             self.prev[q as usize] = p;
             reflex[i] = false;
             for k in [p, q] {
-                reflex[k as usize] = reflex[k as usize] && self.turn(k as usize) <= 0.0;
+                reflex[k as usize] = reflex[k as usize] && !self.is_convex(k as usize);
             }
             left -= 1;
             since_ear = 0;
@@ -100,10 +103,10 @@ impl Triangulator {
         self.triangles.push([self.prev[at as usize], at, self.next[at as usize]]);
     }
 
-    /// Twice the signed area of the corner's triangle.
-    fn turn(&self, i: usize) -> f64 {
+    /// Whether a corner turns to the left by more than rounding explains: an ear at a straight corner would have no area.
+    fn is_convex(&self, i: usize) -> bool {
         let [a, b, c] = [self.prev[i] as usize, i, self.next[i] as usize].map(|k| self.plane[k]);
-        (b - a).perp_dot(c - b)
+        (b - a).perp_dot(c - b) > self.noise * a.distance(b).max(b.distance(c))
     }
 
     /// Whether no reflex corner lies in the corner's triangle, its edges included.
@@ -134,14 +137,22 @@ impl Triangulator {
 /// Whether a quad is cut from corner 0 to corner 2: the cut that leaves two triangles on the quad's side, or of two such
 /// the shorter.
 fn first_diagonal([a, b, c, d]: [DVec3; 4]) -> bool {
-    let normal = double_area_vector([a, b, c, d].into_iter());
-    let up = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).dot(normal) > 0.0;
+    let normal = direction(double_area_vector([a, b, c, d].into_iter()));
+    let noise = noise([a, b, c, d].into_iter());
+    let up = |p: DVec3, q: DVec3, r: DVec3| {
+        (q - p).cross(r - p).dot(normal) > noise * p.distance(q).max(q.distance(r)).max(r.distance(p))
+    };
     let (ac, bd) = (up(a, b, c) && up(a, c, d), up(a, b, d) && up(b, c, d));
     if ac == bd { a.distance_squared(c) <= b.distance_squared(d) } else { ac }
 }
 
+/// How far rounding may move points, with some room for projecting them.
+fn noise(points: impl Iterator<Item = DVec3>) -> f64 {
+    16.0 * f64::EPSILON * points.fold(0.0, |m, p| p.abs().max_element().max(m))
+}
+
 /// The reflex corners of a polygon in a grid of about as many cells.
-struct Grid {
+pub(super) struct Grid {
     origin: DVec2,
     per_unit: DVec2,
     columns: usize,
@@ -151,7 +162,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(plane: &[DVec2], reflex: &[bool]) -> Self {
+    pub(super) fn new(plane: &[DVec2], reflex: &[bool]) -> Self {
         let corners = || (0..plane.len()).filter(|&i| reflex[i]);
         let side = (corners().count() as f64).sqrt().ceil().clamp(1.0, 1024.0) as usize;
         let min = plane.iter().fold(DVec2::INFINITY, |m, &p| m.min(p));
@@ -188,7 +199,7 @@ impl Grid {
         [(at.x as usize).min(self.columns - 1), (at.y as usize).min(self.rows - 1)]
     }
 
-    fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = &[u32]> {
+    pub(super) fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = &[u32]> {
         let ([x0, y0], [x1, y1]) = (self.cell(min), self.cell(max));
         // A row of cells lies together.
         (y0..=y1).map(move |y| {
@@ -278,6 +289,26 @@ mod tests {
         let mut all: Vec<_> = turned.collect();
         all.sort_unstable();
         all
+    }
+
+    #[test]
+    fn straight_corners_are_no_ears_whatever_rounding_does_to_them() {
+        // A triangle with many corners on its sides, in any plane, of any number.
+        let ends = [dvec3(0.3, 0.1, 0.7), dvec3(1.1, -0.2, 0.4), dvec3(0.9, 1.3, -0.6)];
+        for n in [1, 2, 5, 40] {
+            let side = |i: usize| (0..n).map(move |k| ends[i].lerp(ends[(i + 1) % 3], k as f64 / n as f64));
+            let last =
+                if n == 1 { vec![ends[1].lerp(ends[2], 1.0 / 3.0), ends[2]] } else { side(2).collect() };
+            let points: Vec<DVec3> = side(0).chain(side(1)).chain(last).collect();
+            for turn in 0..points.len() as u32 {
+                let corners: Vec<u32> = (0..points.len() as u32).collect();
+                let rotated: Vec<DVec3> =
+                    corners.iter().map(|i| points[(i + turn) as usize % points.len()]).collect();
+                for t in cut(&rotated, &corners) {
+                    assert!(area(&rotated, &[t]) > 1e-4, "{n} {turn} {t:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Who is to blame: the source, the file, the caller, or a limit; and notes on what was tolerated.
 
+use crate::Cancelled;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -179,6 +180,9 @@ pub enum ReadError {
         /// How many the caller allows.
         allowed: u64,
     },
+    /// The hook said stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl ReadError {
@@ -240,6 +244,9 @@ pub enum WriteError {
         /// How many.
         count: usize,
     },
+    /// The hook said stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// What a format could not carry.

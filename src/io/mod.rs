@@ -11,6 +11,7 @@ mod off;
 mod ply;
 mod stl;
 mod text;
+mod watch;
 
 pub use error::{Lost, Malformed, Note, NoteKind, Place, ReadError, WriteError};
 pub use limits::Limits;
@@ -19,12 +20,13 @@ pub use off::{read_off, write_off};
 pub use ply::{read_ply, write_ply, write_ply_ascii, write_ply_big_endian};
 pub use stl::{read_stl, write_stl, write_stl_ascii};
 
-use crate::{CornerData, PolygonSoup, Polygons};
+use crate::{Cancelled, Control, CornerData, PolygonSoup, Polygons};
 use glam::DVec3;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
+use watch::{Watch, Watched};
 
 /// What a file held.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -118,12 +120,51 @@ impl Format {
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, ReadError> {
-    match format {
-        Format::Obj => read_obj(bytes, limits),
-        Format::Stl => read_stl(bytes, limits),
-        Format::Ply => read_ply(bytes, limits),
-        Format::Off => read_off(bytes, limits),
-    }
+    read_with(bytes, format, limits, Control::none())
+}
+
+/// As [`read`], with a progress-and-cancel hook. What tobj does with an OBJ file once it has seen all of it, about half
+/// of the work, is done in one go.
+///
+/// # Errors
+/// [`ReadError`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, Progress, io::{Format, Limits, ReadError, read_with}};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let bytes = b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+/// let refused = read_with(bytes, Format::Off, &Limits::default(), Control::new(&mut stop));
+/// assert!(matches!(refused, Err(ReadError::Cancelled(_))));
+/// ```
+pub fn read_with(
+    bytes: &[u8],
+    format: Format,
+    limits: &Limits,
+    mut control: Control<'_>,
+) -> Result<Loaded, ReadError> {
+    read_watched(bytes, format, limits, &mut control, 0.0)
+}
+
+/// Reads; `from` is the share of the whole call that is done already.
+fn read_watched(
+    bytes: &[u8],
+    format: Format,
+    limits: &Limits,
+    control: &mut Control<'_>,
+    from: f64,
+) -> Result<Loaded, ReadError> {
+    let mut watch = Watch::new(control, bytes.len(), from);
+    watch.report(bytes.len())?;
+    let loaded = match format {
+        Format::Obj => obj::read(bytes, limits, &mut watch),
+        Format::Stl => stl::read(bytes, limits, &mut watch),
+        Format::Ply => ply::read(bytes, limits, &mut watch),
+        Format::Off => off::read(bytes, limits, &mut watch),
+    }?;
+    watch.end()?;
+    Ok(loaded)
 }
 
 /// Reads a file, by its name's extension, or by its content if the extension tells nothing.
@@ -141,6 +182,22 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, Rea
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read_file(path: impl AsRef<Path>, limits: &Limits) -> Result<Loaded, ReadError> {
+    read_file_with(path, limits, Control::none())
+}
+
+/// As [`read_file`], with a progress-and-cancel hook, as [`read_with`].
+///
+/// # Errors
+/// [`ReadError`]; when cancelled.
+pub fn read_file_with(
+    path: impl AsRef<Path>,
+    limits: &Limits,
+    mut control: Control<'_>,
+) -> Result<Loaded, ReadError> {
+    /// Bytes between two reports, and the share of the call that loading them all takes.
+    const PIECE: u64 = 1 << 26;
+    const LOADING: f64 = 0.2;
+    control.report("load", 0.0)?;
     let path = path.as_ref();
     let file = File::open(path)?;
     let length = file.metadata()?.len();
@@ -148,11 +205,15 @@ pub fn read_file(path: impl AsRef<Path>, limits: &Limits) -> Result<Loaded, Read
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX)).map_err(std::io::Error::from)?;
     // A pipe or a device has no length, and may have no end.
-    file.take(limits.bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    let mut source = file.take(limits.bytes.saturating_add(1));
+    while source.by_ref().take(PIECE).read_to_end(&mut bytes)? > 0 {
+        let share = bytes.len() as f64 / length.max(1) as f64;
+        control.report("load", LOADING * share.min(1.0))?;
+    }
     limits.check_bytes(bytes.len() as u64)?;
     let format =
         Format::from_path(path).or_else(|| Format::detect(&bytes)).ok_or(ReadError::UnknownFormat)?;
-    read(&bytes, format, limits)
+    read_watched(&bytes, format, limits, &mut control, LOADING)
 }
 
 /// Writes a soup in a given format; returns what the format could not carry. The same soup gives the same bytes. Wants a
@@ -185,6 +246,45 @@ pub fn write(
         (Format::Ply, Encoding::BigEndian) => write_ply_big_endian(soup, sink),
         (Format::Ply, Encoding::Binary) => write_ply(soup, sink),
     }
+}
+
+/// As [`write`](fn@write), with a progress-and-cancel hook. What was written before it was cancelled stays in the sink.
+///
+/// # Errors
+/// [`WriteError`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, PolygonSoup, Progress, io::{self, Encoding, Format, WriteError}};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let soup = PolygonSoup::default();
+/// let refused =
+///     io::write_with(&soup, Format::Obj, Encoding::Ascii, &mut Vec::new(), Control::new(&mut stop));
+/// assert!(matches!(refused, Err(WriteError::Cancelled(_))));
+/// ```
+pub fn write_with(
+    soup: &PolygonSoup,
+    format: Format,
+    encoding: Encoding,
+    sink: &mut impl Write,
+    mut control: Control<'_>,
+) -> Result<Vec<Lost>, WriteError> {
+    control.report("write", 0.0)?;
+    let (vertices, faces) = (soup.positions.len() as u64, soup.polygons.len() as u64);
+    let corners = soup.polygons.corners().len() as u64;
+    let triangles = corners.saturating_sub(2 * faces);
+    // Without attributes: only progress depends on it.
+    let expected = match (format, encoding) {
+        (Format::Stl, Encoding::Ascii) => 280 * triangles,
+        (Format::Stl, _) => 50 * triangles,
+        (Format::Ply, Encoding::Binary | Encoding::BigEndian) => 24 * vertices + faces + 4 * corners,
+        _ => 56 * vertices + 8 * corners + 2 * faces,
+    };
+    let mut watched =
+        Watched { sink, control: &mut control, written: 0, expected, next: 0, is_cancelled: false };
+    let result = write(soup, format, encoding, &mut watched);
+    if watched.is_cancelled { Err(Cancelled.into()) } else { result }
 }
 
 /// Refuses what a file could not say.

@@ -3,6 +3,7 @@
 
 use super::error::{Lost, Malformed, NoteKind, Notes, Place, ReadError, WriteError};
 use super::text::{Lines, Number, before_comment, number_at, shown, without_mark, words};
+use super::watch::Watch;
 use super::{Limits, Loaded, check_writable};
 use crate::geometry::triangulate::for_each_triangle;
 use crate::{PolygonSoup, Polygons};
@@ -29,21 +30,25 @@ const BEGINNING: usize = 4096;
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read_stl(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+    super::read(bytes, super::Format::Stl, limits)
+}
+
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::byte(0, Malformed::Empty));
     }
     if is_binary(bytes) {
-        return read_binary(bytes, limits);
+        return read_binary(bytes, limits, watch);
     }
     let text = without_mark(bytes)?;
     let beginning = &text[..text.len().min(BEGINNING)];
     let has = |keyword: &[u8]| words(beginning).any(|w| w.eq_ignore_ascii_case(keyword));
     // A binary file that was cut short may begin with "solid", too.
     if has(b"facet") || has(b"endsolid") || (has(b"solid") && !beginning.contains(&0)) {
-        return read_ascii(text, limits);
+        return read_ascii(text, limits, watch);
     }
     // Not text: say what a binary file would be missing.
-    read_binary(bytes, limits)
+    read_binary(bytes, limits, watch)
 }
 
 fn promised(bytes: &[u8]) -> Option<u64> {
@@ -57,7 +62,7 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
     promised(bytes).is_some_and(|n| (length(n)..length(n + 1)).contains(&(bytes.len() as u64)))
 }
 
-fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+fn read_binary(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let Some(wanted) = promised(bytes) else {
         return Err(ReadError::byte(bytes.len(), Malformed::Truncated("the header")));
     };
@@ -74,6 +79,7 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     let mut positions = Vec::with_capacity(3 * count);
     let coordinate = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     for (i, facet) in data.chunks_exact(FACET).take(count).enumerate() {
+        watch.tick(FACET * (count - i))?;
         for corner in facet[12..48].chunks_exact(12) {
             let p = DVec3::new(coordinate(&corner[..4]), coordinate(&corner[4..8]), coordinate(&corner[8..]));
             if !p.is_finite() {
@@ -92,13 +98,15 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     Ok(Loaded { soup: PolygonSoup::new(positions, polygons), notes: notes.finish() })
 }
 
-fn read_ascii(text: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+fn read_ascii(text: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let mut notes = Notes::default();
     let mut soup = PolygonSoup::default();
     let mut corners: Vec<u32> = Vec::new();
     let (mut in_facet, mut in_solid) = (false, false);
     let mut last = 1;
-    for (line, content) in Lines::new(text) {
+    let mut lines = Lines::new(text);
+    while let Some((line, content)) = lines.next() {
+        watch.tick(lines.left())?;
         last = line;
         let mut words = words(before_comment(content));
         let Some(keyword) = words.next() else { continue };

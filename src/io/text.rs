@@ -13,6 +13,11 @@ impl<'a> Lines<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
         Self { rest: Some(text), number: 0 }
     }
+
+    /// How many bytes are left.
+    pub(super) fn left(&self) -> usize {
+        self.rest.map_or(0, <[u8]>::len)
+    }
 }
 
 /// Bytes that end a line, begin a comment or continue a line.

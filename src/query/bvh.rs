@@ -10,6 +10,7 @@ use super::exact::rounded;
 use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
 use crate::matching::NONE;
+use crate::{Cancelled, Control};
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -27,7 +28,7 @@ pub(crate) const CUT: u32 = 1 << 31;
 
 /// Triangles, their points, and the boxes around them. Lengths are scaled by a power of two that brings the largest
 /// coordinate to about one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     /// Corners as indices of `points`, with [`CUT`]; those of a leaf lie together.
@@ -104,6 +105,16 @@ const SMALLEST: f64 = f64::from_bits((1023 - 120) << 52);
 impl Tree {
     /// The tree over triangles (corners into `positions`, perhaps with [`CUT`]) of the given faces. O(n log n).
     pub(crate) fn new(positions: &[DVec3], triangles: &[[u32; 3]], faces: &[u32]) -> Self {
+        Self::new_with(positions, triangles, faces, Control::none()).unwrap_or_default()
+    }
+
+    /// The same with a hook.
+    pub(crate) fn new_with(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        faces: &[u32],
+        mut control: Control<'_>,
+    ) -> Result<Self, Cancelled> {
         let used = || triangles.iter().flatten().map(|&v| positions[(v & !CUT) as usize]);
         let scale = unit_scale(used());
         let bounds = Aabb::around(used().map(|p| p * scale));
@@ -119,15 +130,24 @@ impl Tree {
             }
         };
         let mut primitives: Vec<Primitive> = triangles.iter().enumerate().map(boxed).collect();
-        let nodes = if primitives.is_empty() { vec![] } else { grow(&mut primitives, 0, 0) };
+        let mut nodes = Vec::new();
+        if !primitives.is_empty() {
+            grow_with(
+                &mut primitives,
+                0,
+                0,
+                &mut nodes,
+                &mut Reports { control: &mut control, of: triangles.len() },
+            )?;
+        }
 
         let order = primitives.iter().map(|p| p.triangle as usize);
-        Self {
+        Ok(Self {
             nodes,
             center,
             radius,
             ..Self::flat(positions, order.map(|i| (triangles[i], faces[i])), scale)
-        }
+        })
     }
 
     /// Triangles and faces in the order given, without boxes: no walk finds them.
@@ -179,6 +199,12 @@ impl Tree {
     #[inline]
     pub(crate) fn places(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|v| self.points[(v & !CUT) as usize])
+    }
+
+    /// A box in the terms of the nodes': whatever meets it meets their boxes.
+    pub(crate) fn boxed(&self, low: DVec3, high: DVec3) -> ([f32; 3], [f32; 3]) {
+        let [low, high] = [low, high].map(|p| (p - self.center).to_array());
+        (low.map(|x| rounded_down(x - SLOP)), high.map(|x| rounded_up(x + SLOP)))
     }
 
     pub(crate) fn triangle_count(&self) -> usize {
@@ -244,6 +270,7 @@ impl Bounds {
     }
 }
 
+#[cfg(feature = "rayon")]
 /// The nodes over primitives, the root first; `first` is the number of the first of them in the whole order.
 fn grow(primitives: &mut [Primitive], first: u32, depth: u32) -> Vec<Node> {
     let mut nodes = Vec::new();
@@ -251,9 +278,43 @@ fn grow(primitives: &mut [Primitive], first: u32, depth: u32) -> Vec<Node> {
     nodes
 }
 
-fn grow_into(primitives: &mut [Primitive], first: u32, depth: u32, nodes: &mut Vec<Node>) {
-    // Ranges with their bounds, in order.
-    let mut parts: SmallVec<[(usize, usize, Bounds); WIDTH]> = SmallVec::new();
+/// The hook of a tree that grows, and over how many primitives.
+struct Reports<'c, 'a> {
+    control: &'c mut Control<'a>,
+    of: usize,
+}
+
+/// Between two reports, about.
+const ROUND: usize = 1 << 18;
+
+/// [`grow_into`], from the calling thread down to where a report is due.
+fn grow_with(
+    primitives: &mut [Primitive],
+    first: u32,
+    depth: u32,
+    nodes: &mut Vec<Node>,
+    reports: &mut Reports<'_, '_>,
+) -> Result<(), Cancelled> {
+    reports.control.report("index", f64::from(first) / reports.of as f64)?;
+    if primitives.len() <= ROUND {
+        grow_into(primitives, first, depth, nodes);
+        return Ok(());
+    }
+    let parts = parts(primitives, depth);
+    let here = nodes.len();
+    nodes.push(node(&parts, first));
+    for (i, &(start, end, _)) in parts.iter().enumerate().filter(|(_, p)| p.1 - p.0 > LEAF) {
+        nodes[here].child[i] = nodes.len() as u32;
+        grow_with(&mut primitives[start..end], first + start as u32, depth + 1, nodes, reports)?;
+    }
+    Ok(())
+}
+
+type Parts = SmallVec<[(usize, usize, Bounds); WIDTH]>;
+
+/// Orders primitives into the children of a node: ranges with their bounds.
+fn parts(primitives: &mut [Primitive], depth: u32) -> Parts {
+    let mut parts = Parts::new();
     parts.push((0, primitives.len(), Bounds::of(primitives)));
     // The widest of those too large for a leaf, then of all: a node is full unless triangles run out.
     for most in [LEAF, 1] {
@@ -266,14 +327,24 @@ fn grow_into(primitives: &mut [Primitive], first: u32, depth: u32, nodes: &mut V
             parts.insert(i + 1, (middle, end, Bounds::of(&primitives[middle..end])));
         }
     }
-    let here = nodes.len();
-    let mut node = Node::around(&parts);
+    parts
+}
+
+/// The node over these parts; children that are nodes are yet to be linked.
+fn node(parts: &Parts, first: u32) -> Node {
+    let mut node = Node::around(parts);
     for (i, (start, end, _)) in parts.iter().enumerate() {
         let count = end - start;
         (node.child[i], node.count[i]) =
             if count > LEAF { (0, INNER) } else { (first + *start as u32, count as u8) };
     }
-    nodes.push(node);
+    node
+}
+
+fn grow_into(primitives: &mut [Primitive], first: u32, depth: u32, nodes: &mut Vec<Node>) {
+    let parts = parts(primitives, depth);
+    let here = nodes.len();
+    nodes.push(node(&parts, first));
     let is_inner = |p: &(usize, usize, Bounds)| p.1 - p.0 > LEAF;
     #[cfg(feature = "rayon")]
     if primitives.len() > 1 << 15 {

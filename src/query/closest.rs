@@ -1,12 +1,12 @@
 //! Nearest elements: vertices, edges, faces, face centres, points of the surface.
 
-use super::batch::each;
+use super::batch::each_with;
 use super::bvh::Tree;
 use super::contains::Side;
 use super::nearest::{Probe, segment_foot, triangle_foot};
 use super::{Feature, MeshIndex};
 use crate::geometry::unit_scale;
-use crate::{EdgeKey, FaceKey, VertexKey};
+use crate::{Cancelled, Control, EdgeKey, FaceKey, VertexKey};
 use glam::DVec3;
 
 /// How nearest elements are looked for. The default looks everywhere.
@@ -35,6 +35,9 @@ pub enum QueryError {
     /// The maximum distance is NaN.
     #[error("the maximum distance is not a number")]
     MaxDistance,
+    /// The hook of a batch said stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The nearest element of a kind.
@@ -77,9 +80,9 @@ impl ClosestPoint {
     }
 }
 
-/// Defines the batch form of a question.
+/// Defines the batch forms of a question.
 macro_rules! batch {
-    ($name:ident, $one:ident -> $out:ty) => {
+    ($name:ident, $with:ident, $one:ident -> $out:ty) => {
         #[doc = concat!("[`", stringify!($one), "`](Self::", stringify!($one),
                                     ") for every point, on several threads with the feature `rayon`.")]
         ///
@@ -90,7 +93,21 @@ macro_rules! batch {
             points: &[DVec3],
             options: ClosestOptions,
         ) -> Result<Vec<Option<$out>>, QueryError> {
-            each(points, |&p| self.$one(p, options)).into_iter().collect()
+            self.$with(points, options, Control::none())
+        }
+
+        #[doc = concat!("[`", stringify!($name), "`](Self::", stringify!($name),
+                                    ") with a progress-and-cancel hook.")]
+        ///
+        /// # Errors
+        /// [`QueryError`], of the first point that is not finite, or `Cancelled`.
+        pub fn $with(
+            &self,
+            points: &[DVec3],
+            options: ClosestOptions,
+            control: Control<'_>,
+        ) -> Result<Vec<Option<$out>>, QueryError> {
+            each_with(points, "closest", control, |&p| self.$one(p, options))?.into_iter().collect()
         }
     };
 }
@@ -287,11 +304,11 @@ impl MeshIndex<'_> {
         }))
     }
 
-    batch!(closest_vertex_batch, closest_vertex -> Nearest<VertexKey>);
-    batch!(closest_edge_batch, closest_edge -> Nearest<EdgeKey>);
-    batch!(closest_face_batch, closest_face -> Nearest<FaceKey>);
-    batch!(closest_face_center_batch, closest_face_center -> Nearest<FaceKey>);
-    batch!(closest_point_batch, closest_point -> ClosestPoint);
+    batch!(closest_vertex_batch, closest_vertex_batch_with, closest_vertex -> Nearest<VertexKey>);
+    batch!(closest_edge_batch, closest_edge_batch_with, closest_edge -> Nearest<EdgeKey>);
+    batch!(closest_face_batch, closest_face_batch_with, closest_face -> Nearest<FaceKey>);
+    batch!(closest_face_center_batch, closest_face_center_batch_with, closest_face_center -> Nearest<FaceKey>);
+    batch!(closest_point_batch, closest_point_batch_with, closest_point -> ClosestPoint);
 
     /// The slot of the nearest vertex of a tree.
     fn vertex_in(&self, tree: &Tree, point: DVec3, options: ClosestOptions) -> Option<u32> {

@@ -1,7 +1,7 @@
 //! What a line does at edges, at vertices and in planes: contacts that hang together are one event.
 //!
-//! Contacts hang together if they are at the same edge or vertex, or if the line runs from one to the other in the plane
-//! of a triangle. The passings of the moved line at all contacts of an event add up to what the event changes: how far
+//! Contacts hang together if they are at the same edge or vertex, not behind the origin, or if the line runs from one to
+//! the other in the plane of a triangle. The passings of the moved line at all contacts of an event add up to what the event changes: how far
 //! the line is inside before and after it. Zero is a touch.
 
 use super::cast::{Cast, Contact, Key, Part, Touched};
@@ -26,9 +26,10 @@ pub(crate) fn events(cast: &Cast<'_>, contacts: &[Contact], into: &mut Vec<Event
         .flat_map(|(i, c)| c.at.iter().map(move |touched| (touched.key, i as u32, touched)))
         .collect();
     places.sort_by_key(|p| (p.0, p.1));
-    // One group for each contact, joined where they share a key.
+    // One group for each contact, joined where they share a key. What is behind the origin joins nothing: much of it has
+    // not been looked at.
     let mut groups = UnionFind::new(contacts.len());
-    for pair in places.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+    for pair in places.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].2.t >= 0.0) {
         groups.join(pair[0].1, pair[1].1);
     }
     let mut members: Vec<(u32, Key, u32, &Touched)> =

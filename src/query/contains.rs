@@ -1,11 +1,11 @@
 //! Inside or outside of a closed surface.
 
-use super::batch::each;
+use super::batch::each_with;
 use super::bvh::Tree;
 use super::cast::{Cast, Meeting};
 use super::{MeshIndex, QueryError};
-use crate::Closed;
 use crate::geometry::unit_scale;
+use crate::{Cancelled, Closed, Control};
 use glam::{DVec3, dvec3};
 
 /// Where a point is relative to a closed surface.
@@ -42,6 +42,14 @@ impl<'m> Closed<'m> {
     /// ```
     pub fn index(&self) -> SolidIndex<'m> {
         SolidIndex { index: self.mesh().index() }
+    }
+
+    /// [`index`](Self::index) with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the hook says so.
+    pub fn index_with(&self, control: Control<'_>) -> Result<SolidIndex<'m>, Cancelled> {
+        Ok(SolidIndex { index: self.mesh().index_with(control)? })
     }
 
     /// Where a point is: inside if the surface winds about it, whichever way and however often; so a cavity is outside,
@@ -105,7 +113,19 @@ impl<'m> SolidIndex<'m> {
     /// # Errors
     /// [`QueryError::NonFinitePoint`], of the first such point.
     pub fn contains_batch(&self, points: &[DVec3]) -> Result<Vec<Side>, QueryError> {
-        each(points, |&p| self.contains(p)).into_iter().collect()
+        self.contains_batch_with(points, Control::none())
+    }
+
+    /// [`contains_batch`](Self::contains_batch) with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`QueryError::NonFinitePoint`], of the first such point, or [`QueryError::Cancelled`].
+    pub fn contains_batch_with(
+        &self,
+        points: &[DVec3],
+        control: Control<'_>,
+    ) -> Result<Vec<Side>, QueryError> {
+        each_with(points, "contains", control, |&p| self.contains(p))?.into_iter().collect()
     }
 
     /// How often the surface winds about a point: 1 in a solid, 0 outside and in its cavities, 2 where two solids overlap,

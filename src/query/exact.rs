@@ -92,6 +92,49 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, a.mul_add(b, -product))
 }
 
+/// On which side of the plane of `a`, `b` and `c` a point is: 1 where their normal points, 0 in the plane.
+#[cold]
+pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> i8 {
+    let mut sum = Exact::default();
+    if let (Some(a), Some(b), Some(c)) = (difference(a, point), difference(b, point), difference(c, point)) {
+        sum.add_determinant(a, b, c);
+    } else {
+        sum.add_determinant(a, b, c);
+        sum.add_determinant(-point, b, c);
+        sum.add_determinant(a, -point, c);
+        sum.add_determinant(a, b, -point);
+    }
+    -sum.sign()
+}
+
+/// Which way the path `a`, `b`, `c` turns, seen against an axis: 1 to the left, 0 not at all.
+pub(crate) fn turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> i8 {
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    let (left, right) = ((b[j] - a[j]) * (c[k] - a[k]), (b[k] - a[k]) * (c[j] - a[j]));
+    if (left - right).abs() > (left.abs() + right.abs()) * TURN_ERROR {
+        return if left > right { 1 } else { -1 };
+    }
+    let mut sum = Exact::default();
+    if let (Some(b), Some(c)) = (difference(b, a), difference(c, a)) {
+        sum.add_cross(b, c, axis);
+    } else {
+        sum.add_cross(a, b, axis);
+        sum.add_cross(b, c, axis);
+        sum.add_cross(c, a, axis);
+    }
+    sum.sign()
+}
+
+/// Times the sum of the magnitudes of two products of differences: more than the rounding error of theirs (Shewchuk's
+/// `ccwerrboundA`, and a little).
+pub(crate) const TURN_ERROR: f64 = 2.0 * f64::EPSILON;
+
+/// The difference, if nothing is rounded.
+fn difference(a: DVec3, b: DVec3) -> Option<DVec3> {
+    let (difference, lost) = (a - b, |i: usize| two_sum(a[i], -b[i]).1);
+    (lost(0) == 0.0 && lost(1) == 0.0 && lost(2) == 0.0).then_some(difference)
+}
+
 /// A line through `origin`, for which sides are decided exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
@@ -153,13 +196,7 @@ impl Line {
 
     /// The sign of the determinant of the corners seen from the origin: zero if it lies in their plane.
     pub(crate) fn origin_side(&self, [a, b, c]: [DVec3; 3]) -> i8 {
-        let o = self.origin;
-        let mut sum = Exact::default();
-        sum.add_determinant(a, b, c);
-        sum.add_determinant(-o, b, c);
-        sum.add_determinant(a, -o, c);
-        sum.add_determinant(a, b, -o);
-        sum.sign()
+        -side(a, b, c, self.origin)
     }
 }
 

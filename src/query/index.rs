@@ -4,7 +4,7 @@ use super::bvh::{CUT, Tree};
 use super::cast::Part;
 use crate::geometry::triangulate::Triangulator;
 use crate::geometry::unit_scale;
-use crate::{EdgeKey, FaceKey, Mesh, VertexKey};
+use crate::{Cancelled, Control, EdgeKey, FaceKey, Mesh, VertexKey};
 use glam::DVec3;
 use std::fmt;
 use std::sync::OnceLock;
@@ -58,14 +58,47 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn index(&self) -> MeshIndex<'_> {
+        let (triangles, faces) = self.cut_triangles();
+        self.indexed(Tree::new(&self.positions, &triangles, &faces))
+    }
+
+    /// [`index`](Self::index) with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the hook says so.
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, glam::DVec3};
+    /// use meshwright::{Cancelled, Control, Progress};
+    /// use std::ops::ControlFlow;
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
+    /// let mut stop = |_: Progress| ControlFlow::Break(());
+    /// assert_eq!(mesh.index_with(Control::new(&mut stop)).err(), Some(Cancelled));
+    /// assert_eq!(mesh.index_with(Control::none())?.triangle_count(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn index_with(&self, mut control: Control<'_>) -> Result<MeshIndex<'_>, Cancelled> {
+        control.report("triangulate", 0.0)?;
+        let (triangles, faces) = self.cut_triangles();
+        let tree = Tree::new_with(&self.positions, &triangles, &faces, control.part(0.1, 1.0))?;
+        Ok(self.indexed(tree))
+    }
+
+    fn indexed(&self, tree: Tree) -> MeshIndex<'_> {
+        MeshIndex { mesh: self, tree, isolated: OnceLock::new(), centers: OnceLock::new() }
+    }
+
+    /// The triangles of [`for_each_cut_triangle`](Self::for_each_cut_triangle), and the face of each.
+    fn cut_triangles(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
         let mut triangles = Vec::with_capacity(self.face_count());
         let mut faces = Vec::with_capacity(self.face_count());
         self.for_each_cut_triangle(|f, t| {
             triangles.push(t);
             faces.push(f);
         });
-        let tree = Tree::new(&self.positions, &triangles, &faces);
-        MeshIndex { mesh: self, tree, isolated: OnceLock::new(), centers: OnceLock::new() }
+        (triangles, faces)
     }
 
     /// Calls `f` with each face's slot and triangles, in order; corners are vertex slots, with [`CUT`] where the edge to

@@ -217,19 +217,22 @@ pub(crate) fn judge(
     let solid: Vec<u32> =
         (0..triangles.len() as u32).filter(|&t| closed[part_of[t as usize] as usize]).collect();
     let several = closed.iter().filter(|c| **c).count() > 1;
-    let tree = several.then(|| {
+    let tree = if several {
         let shapes: Vec<[u32; 3]> = solid.iter().map(|&t| triangles[t as usize]).collect();
         let parts: Vec<u32> = solid.iter().map(|&t| part_of[t as usize]).collect();
-        Tree::new(positions, &shapes, &parts)
-    });
+        Some(Tree::new_with(positions, &shapes, &parts, control.part(0.1, 0.3))?)
+    } else {
+        None
+    };
     let mut tally = Tally::new(closed.len());
     let mut verdicts = Vec::with_capacity(closed.len());
     for (part, own) in of_part.iter().enumerate() {
-        control.report("turn outward", 0.3 + 0.7 * part as f64 / closed.len() as f64)?;
+        let [from, to] = [part, part + 1].map(|done| 0.3 + 0.7 * done as f64 / closed.len() as f64);
+        control.report("turn outward", from)?;
         let mut verdict =
             Verdict { closed: closed[part], depth: 0, crosses: false, confidence: 0.0, reverse: false };
         if !closed[part] {
-            let mean = mean_winding(own, places);
+            let mean = mean_winding(own, places, control.part(from, to))?;
             verdict.confidence = (2.0 * mean.abs()).min(1.0);
             verdict.reverse = mean < 0.0 && verdict.confidence >= min_confidence;
             verdicts.push(verdict);
@@ -348,34 +351,47 @@ impl Tally {
     }
 }
 
-/// Six times the volume of a closed part, about its first corner; scaled, so that only the sign means anything.
+/// Six times the volume of a closed part, about its first corner; scaled, so that only the sign means anything. 0 if it is
+/// no more than what rounding may make of a flat part.
 fn signed_volume(own: &[u32], places: impl Fn(u32) -> [DVec3; 3] + Copy) -> f64 {
     let Some(&first) = own.first() else { return 0.0 };
     let origin = places(first)[0] * 0.5;
     let local = |p: DVec3| p * 0.5 - origin;
     let scale = unit_scale(own.iter().flat_map(|&t| places(t)).map(local));
-    let (mut sum, mut lost) = (0.0, 0.0);
+    let (mut sum, mut lost, mut size) = (0.0, 0.0, 0.0);
     for &t in own {
         let [a, b, c] = places(t).map(|p| local(p) * scale);
         let (add, before) = (a.cross(b).dot(c), sum);
+        size += a.length() * b.length() * c.length();
         // Neumaier's compensated sum.
         sum += add;
         lost += if f64::abs(before) >= f64::abs(add) { (before - sum) + add } else { (add - sum) + before };
     }
-    sum + lost
+    let volume = sum + lost;
+    if volume.abs() > 8.0 * f64::EPSILON * size { volume } else { 0.0 }
 }
 
 /// The mean winding number of a part on its own surface, weighted by area: a half where it closes around the inside, minus
 /// a half where it is inside out.
-fn mean_winding(own: &[u32], places: impl Fn(u32) -> [DVec3; 3] + Copy) -> f64 {
+fn mean_winding(
+    own: &[u32],
+    places: impl Fn(u32) -> [DVec3; 3] + Copy,
+    mut control: Control<'_>,
+) -> Result<f64, Cancelled> {
     const LOOKED_AT: usize = 256;
-    let Some(&first) = own.first() else { return 0.0 };
+    let Some(&first) = own.first() else { return Ok(0.0) };
     let origin = places(first)[0] * 0.5;
     let local = |p: DVec3| p * 0.5 - origin;
     let scale = unit_scale(own.iter().flat_map(|&t| places(t)).map(local));
     let shape = |t: u32| places(t).map(|p| local(p) * scale);
     let (mut sum, mut weight) = (0.0, 0.0);
-    for &t in own.iter().step_by(own.len().div_ceil(LOOKED_AT)) {
+    let (step, mut since) = (own.len().div_ceil(LOOKED_AT), 0);
+    for (i, &t) in own.iter().enumerate().step_by(step) {
+        since += own.len();
+        if since >= 1 << 19 {
+            control.report("turn outward", i as f64 / own.len() as f64)?;
+            since = 0;
+        }
         let area = double_area_vector(shape(t).into_iter()).length();
         let at = shape(t).iter().sum::<DVec3>() / 3.0;
         let angle: f64 =
@@ -383,7 +399,7 @@ fn mean_winding(own: &[u32], places: impl Fn(u32) -> [DVec3; 3] + Copy) -> f64 {
         sum += area * angle;
         weight += area;
     }
-    if weight > 0.0 { sum / weight / (4.0 * std::f64::consts::PI) } else { 0.0 }
+    Ok(if weight > 0.0 { sum / weight / (4.0 * std::f64::consts::PI) } else { 0.0 })
 }
 
 /// The solid angle under which a triangle is seen, positive from behind (Van Oosterom and Strackee, "The Solid Angle of a

@@ -1,11 +1,14 @@
 //! Rays: where a half-line meets the surface.
 
-use super::batch::each;
+use super::batch::each_with;
 use super::cast::{Cast, Meeting, Part};
 use super::contacts::{Event, events};
 use super::{Feature, MeshIndex};
-use crate::{FaceKey, VertexKey};
+use crate::{Cancelled, Control, FaceKey, VertexKey};
 use glam::DVec3;
+
+/// What the hook is told.
+const RAYS: &str = "rays";
 
 /// A half-line: all `origin + t * direction` with `t >= 0`. Finite, with a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,17 +210,45 @@ impl MeshIndex<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn hits_batch(&self, rays: &[Ray]) -> Vec<Vec<RayHit>> {
-        each(rays, |ray| self.hits(ray))
+        self.hits_batch_with(rays, Control::none()).unwrap_or_default()
+    }
+
+    /// [`hits_batch`](Self::hits_batch) with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the hook says so.
+    pub fn hits_batch_with(&self, rays: &[Ray], control: Control<'_>) -> Result<Vec<Vec<RayHit>>, Cancelled> {
+        each_with(rays, RAYS, control, |ray| self.hits(ray))
     }
 
     /// [`first_hit`](Self::first_hit) of every ray, on several threads with the feature `rayon`.
     pub fn first_hit_batch(&self, rays: &[Ray]) -> Vec<Option<RayHit>> {
-        each(rays, |ray| self.first_hit(ray))
+        self.first_hit_batch_with(rays, Control::none()).unwrap_or_default()
+    }
+
+    /// [`first_hit_batch`](Self::first_hit_batch) with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the hook says so.
+    pub fn first_hit_batch_with(
+        &self,
+        rays: &[Ray],
+        control: Control<'_>,
+    ) -> Result<Vec<Option<RayHit>>, Cancelled> {
+        each_with(rays, RAYS, control, |ray| self.first_hit(ray))
     }
 
     /// [`is_hit`](Self::is_hit) of every ray, on several threads with the feature `rayon`.
     pub fn is_hit_batch(&self, rays: &[Ray]) -> Vec<bool> {
-        each(rays, |ray| self.is_hit(ray))
+        self.is_hit_batch_with(rays, Control::none()).unwrap_or_default()
+    }
+
+    /// [`is_hit_batch`](Self::is_hit_batch) with a progress-and-cancel hook.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the hook says so.
+    pub fn is_hit_batch_with(&self, rays: &[Ray], control: Control<'_>) -> Result<Vec<bool>, Cancelled> {
+        each_with(rays, RAYS, control, |ray| self.is_hit(ray))
     }
 
     fn cast(&self, ray: &Ray) -> Cast<'_> {

@@ -9,7 +9,7 @@ mod orient;
 mod union_find;
 
 pub use loops::NakedEdges;
-pub use orient::{NotOrientable, unify_winding};
+pub use orient::{NotOrientable, UnifyWithError, unify_winding, unify_winding_with};
 
 pub(crate) use duplicates::{Cycle, duplicate_faces};
 pub(crate) use fans::fan_roots;

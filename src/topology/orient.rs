@@ -4,7 +4,7 @@ use super::{FaceOf, Topology, UnionFind};
 use crate::indexed::list;
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Outcome, Record, Report, Step, StepSummary};
-use crate::{IndexedMesh, Polygons};
+use crate::{Cancelled, Control, IndexedMesh, Polygons};
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -15,6 +15,18 @@ pub struct NotOrientable {
     /// For each such part, a closed walk of faces, each sharing a two-face edge with the next and the last with the
     /// first, along which the winding comes back reversed.
     pub cycles: Vec<Vec<u32>>,
+}
+
+/// Why windings were not unified under a hook.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnifyWithError {
+    /// Some parts cannot be oriented.
+    #[error(transparent)]
+    Refused(#[from] NotOrientable),
+    /// The hook said stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl fmt::Display for NotOrientable {
@@ -48,15 +60,44 @@ impl fmt::Display for NotOrientable {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn unify_winding(topology: &Topology<'_>) -> Result<Outcome<IndexedMesh>, NotOrientable> {
+    unify_by(topology, |_, _| Ok(()))
+}
+
+/// As [`unify_winding`], with a progress-and-cancel hook.
+///
+/// # Errors
+/// [`UnifyWithError`]: as [`unify_winding`]; when cancelled.
+///
+/// # Examples
+/// ```
+/// use meshwright::{Control, IndexedMesh, Progress, UnifyWithError, unify_winding_with};
+/// use std::ops::ControlFlow;
+/// let mut stop = |_: Progress| ControlFlow::Break(());
+/// let refused = unify_winding_with(&IndexedMesh::default().topology(), Control::new(&mut stop));
+/// assert!(matches!(refused, Err(UnifyWithError::Cancelled(_))));
+/// ```
+pub fn unify_winding_with(
+    topology: &Topology<'_>,
+    mut control: Control<'_>,
+) -> Result<Outcome<IndexedMesh>, UnifyWithError> {
+    unify_by(topology, |stage, fraction| Ok(control.report(stage, fraction)?))
+}
+
+fn unify_by<E: From<NotOrientable>>(
+    topology: &Topology<'_>,
+    mut report: impl FnMut(&'static str, f64) -> Result<(), E>,
+) -> Result<Outcome<IndexedMesh>, E> {
     let mesh = topology.mesh;
+    report("unify", 0.0)?;
     let mut flip = vec![false; mesh.face_count()];
     if topology.matching.any_conflict {
         let found = orient(mesh.polygons(), &topology.face_of, &topology.matching.mates());
         if !found.cycles.is_empty() {
-            return Err(NotOrientable { cycles: found.cycles });
+            return Err(NotOrientable { cycles: found.cycles }.into());
         }
         flip = found.flip;
     }
+    report("reverse", 0.6)?;
     Ok(with_flipped(mesh, &flip, Step::Unify))
 }
 
@@ -71,14 +112,9 @@ pub(crate) fn with_flipped(mesh: &IndexedMesh, flip: &[bool], step: Step) -> Out
         attributes.reverse_corners(polygons.starts()[face]..polygons.starts()[face + 1]);
         let corners = &mesh.polygons()[face];
         let middle = corners.iter().map(|&v| mesh.positions()[v as usize] / corners.len() as f64).sum();
-        report.records.push(Record {
-            step,
-            kind: Kind::FlippedFace,
-            element: Element::Face(face as u32),
-            place: Some(middle),
-        });
+        report.records.push(Record::new(step, Kind::FlippedFace, Element::Face(face as u32), Some(middle)));
     }
-    report.steps.push(StepSummary { step, changed: report.records.len(), tolerance: None });
+    report.steps.push(StepSummary::new(step, report.records.len()));
     Outcome {
         value: IndexedMesh::trusted(mesh.positions().to_vec(), polygons, None).carrying(attributes),
         report,

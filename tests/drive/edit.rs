@@ -3,6 +3,10 @@
 
 #[path = "apply.rs"]
 mod apply;
+#[path = "merged.rs"]
+mod merged;
+#[path = "plain.rs"]
+mod plain;
 #[path = "../shapes/mod.rs"]
 pub(crate) mod shapes;
 #[path = "start.rs"]

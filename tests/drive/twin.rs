@@ -2,57 +2,19 @@
 //! accepted if the lists build a mesh from nothing that keeps the promises.
 
 use super::Op;
-use meshwright::glam::DVec3;
-use meshwright::{EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, VertexKey};
-use std::collections::{BTreeMap, BTreeSet};
-
-/// An element of the mesh before, or the i-th that the operator's result names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Id<K> {
-    Old(K),
-    New(usize),
-}
+use super::merged::{dissolve, triangulate};
+pub(crate) use super::plain::{Counts, E, F, Id, Plain, V};
+use super::plain::{around, keeping_first, put_on_edge, rotated, without_bare_edges};
 use Id::{New, Old};
-
-impl<K: Copy> Id<K> {
-    /// The key, given those that the result names.
-    pub(crate) fn key(self, named: &[K]) -> K {
-        match self {
-            Old(key) => key,
-            New(i) => named[i],
-        }
-    }
-}
-
-pub(crate) type V = Id<VertexKey>;
-pub(crate) type E = Id<EdgeKey>;
-pub(crate) type F = Id<FaceKey>;
-
-/// A mesh as plain lists.
-#[derive(Clone, Debug)]
-pub(crate) struct Plain {
-    pub(crate) at: BTreeMap<V, DVec3>,
-    /// From the first corner.
-    pub(crate) faces: BTreeMap<F, Vec<V>>,
-    /// From where to where each edge's half-edge runs.
-    pub(crate) edges: BTreeMap<E, [V; 2]>,
-}
-
-/// How many there are of what topology counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Counts {
-    pub(crate) euler: i64,
-    pub(crate) loops: i64,
-    pub(crate) components: i64,
-    pub(crate) isolated: i64,
-}
+use meshwright::{FaceKey, HalfedgeKey, Mesh, VertexKey};
+use std::collections::BTreeSet;
 
 /// What an operator should leave behind.
 #[derive(Clone, Debug)]
 pub(crate) struct After {
     pub(crate) plain: Plain,
     /// How the counts change, if the documentation says.
-    change: Option<Counts>,
+    pub(crate) change: Option<Counts>,
     /// Corners that hold what another held before; all that were there before and are not mixed keep theirs.
     pub(crate) corners: Vec<((F, V), (FaceKey, VertexKey))>,
     pub(crate) mixed_corners: BTreeSet<(F, V)>,
@@ -63,134 +25,10 @@ pub(crate) struct After {
     pub(crate) mixed_faces: BTreeSet<F>,
 }
 
-const SAME: Counts = Counts { euler: 0, loops: 0, components: 0, isolated: 0 };
-
-/// Without the half-edges of edges.
-fn around(cycle: &[V]) -> impl Iterator<Item = (V, V)> {
-    (0..cycle.len()).map(|i| (cycle[i], cycle[(i + 1) % cycle.len()]))
-}
-
-fn rotated(cycle: &[V], first: V) -> Vec<V> {
-    let at = cycle.iter().position(|&v| v == first).expect("a corner of the face");
-    cycle[at..].iter().chain(&cycle[..at]).copied().collect()
-}
-
-impl Plain {
-    pub(crate) fn of(mesh: &Mesh) -> Self {
-        let cycle = |f| mesh.face_vertices(f).map(Old).collect();
-        let ends = |e| mesh.edge_halfedge(e);
-        Self {
-            at: mesh.vertices().map(|v| (Old(v), mesh.position(v))).collect(),
-            faces: mesh.faces().map(|f| (Old(f), cycle(f))).collect(),
-            edges: mesh
-                .edges()
-                .map(|e| (Old(e), [Old(mesh.origin(ends(e))), Old(mesh.target(ends(e)))]))
-                .collect(),
-        }
-    }
-
-    /// The face on the left of each directed edge.
-    fn left(&self) -> BTreeMap<(V, V), F> {
-        self.faces.iter().flat_map(|(&f, cycle)| around(cycle).map(move |ends| (ends, f))).collect()
-    }
-
-    /// The boundary: where each half-edge without a face leads, by its origin.
-    fn boundary(&self) -> BTreeMap<V, V> {
-        let left = self.left();
-        left.keys().filter(|&&(a, b)| !left.contains_key(&(b, a))).map(|&(a, b)| (b, a)).collect()
-    }
-
-    pub(crate) fn counts(&self) -> Counts {
-        let mut root: BTreeMap<V, V> = BTreeMap::new();
-        fn find(root: &BTreeMap<V, V>, mut v: V) -> V {
-            while root[&v] != v {
-                v = root[&v];
-            }
-            v
-        }
-        let mut pairs = BTreeSet::new();
-        for cycle in self.faces.values() {
-            for (a, b) in around(cycle) {
-                pairs.insert((a.min(b), a.max(b)));
-                root.entry(a).or_insert(a);
-                root.entry(b).or_insert(b);
-                let (a, b) = (find(&root, a), find(&root, b));
-                root.insert(a.max(b), a.min(b));
-            }
-        }
-        let mut next = self.boundary();
-        let mut loops = 0;
-        while let Some((_, mut to)) = next.pop_first() {
-            loops += 1;
-            while let Some(further) = next.remove(&to) {
-                to = further;
-            }
-        }
-        Counts {
-            euler: self.at.len() as i64 - pairs.len() as i64 + self.faces.len() as i64,
-            loops,
-            components: root.iter().filter(|(v, r)| v == r).count() as i64,
-            isolated: self.at.len() as i64 - root.len() as i64,
-        }
-    }
-
-    /// Whether the lists build a mesh, with just the edges they name.
-    fn builds(&self) -> Result<(), String> {
-        let number: BTreeMap<V, u32> = self.at.keys().copied().zip(0..).collect();
-        let cycle = |c: &Vec<V>| c.iter().map(|v| number[v]).collect::<Vec<_>>();
-        let faces = self.faces.values().map(cycle).collect();
-        let pool = IndexedMesh::new(self.at.values().copied().collect(), faces)
-            .map_err(|e| format!("{:?}", e.defects))?;
-        Mesh::build(&pool).map_err(|e| format!("{:?}", e.defects))?;
-        let mut named: Vec<_> = self.edges.values().map(|&[a, b]| (a.min(b), a.max(b))).collect();
-        named.sort_unstable();
-        let used: BTreeSet<_> =
-            self.faces.values().flat_map(|c| around(c)).map(|(a, b)| (a.min(b), a.max(b))).collect();
-        match named.iter().eq(&used) {
-            true => Ok(()),
-            false => Err(format!("edges {named:?}, but faces have {used:?}")),
-        }
-    }
-
-    /// Renames vertices in faces and edges.
-    fn rename(&mut self, name: impl Fn(V) -> V) {
-        self.faces
-            .values_mut()
-            .flatten()
-            .chain(self.edges.values_mut().flatten())
-            .for_each(|v| *v = name(*v));
-    }
-
-    fn edge_between(&self, a: V, b: V) -> Option<E> {
-        self.edges.iter().find(|(_, ends)| **ends == [a, b] || **ends == [b, a]).map(|(&e, _)| e)
-    }
-
-    /// The targets of the edges at a vertex, clockwise; from the boundary half-edge if there is one.
-    fn clockwise(&self, v: V) -> Vec<V> {
-        let boundary = self.boundary();
-        let before: BTreeMap<V, V> = self
-            .faces
-            .values()
-            .filter(|c| c.contains(&v))
-            .map(|c| {
-                let c = rotated(c, v);
-                (c[c.len() - 1], c[1])
-            })
-            .collect();
-        let Some(first) = boundary.get(&v).or(before.keys().next()).copied() else { return Vec::new() };
-        let mut order = vec![first];
-        // Clockwise after `n` comes what follows n -> v in its face.
-        while let Some(&n) = before.get(&order[order.len() - 1])
-            && n != first
-        {
-            order.push(n);
-        }
-        order
-    }
-}
+pub(crate) const SAME: Counts = Counts { euler: 0, loops: 0, components: 0, isolated: 0 };
 
 impl After {
-    fn new(plain: Plain, change: Option<Counts>) -> Self {
+    pub(crate) fn new(plain: Plain, change: Option<Counts>) -> Self {
         Self {
             plain,
             change,
@@ -204,7 +42,7 @@ impl After {
     }
 
     /// Corners of a new face at old vertices hold what they held in the old face.
-    fn carry(&mut self, to: F, from: FaceKey) {
+    pub(crate) fn carry(&mut self, to: F, from: FaceKey) {
         for &v in &self.plain.faces[&to] {
             if let Old(key) = v {
                 self.corners.push(((to, v), (from, key)));
@@ -238,7 +76,7 @@ fn ends(mesh: &Mesh, h: HalfedgeKey) -> Option<[V; 2]> {
     Some([Old(mesh.get_origin(h)?), Old(mesh.get_target(h)?)])
 }
 
-fn old_face(f: F) -> FaceKey {
+pub(crate) fn old_face(f: F) -> FaceKey {
     f.key(&[])
 }
 
@@ -513,145 +351,4 @@ fn after(mesh: &Mesh, before: &Plain, op: &Op) -> Option<Vec<After>> {
             vec![After::new(p, Some(SAME))]
         }
     })
-}
-
-/// The cycle from the face's first corner, if that is among its corners still.
-fn keeping_first(before: &Plain, f: F, cycle: Vec<V>) -> Vec<V> {
-    let first = before.faces[&f][0];
-    if cycle.contains(&first) { rotated(&cycle, first) } else { cycle }
-}
-
-fn without_bare_edges(mut p: Plain) -> Plain {
-    let left = p.left();
-    p.edges.retain(|_, &mut [a, b]| left.contains_key(&(a, b)) || left.contains_key(&(b, a)));
-    p
-}
-
-fn put_on_edge(p: &mut Plain, e: EdgeKey, position: DVec3) -> Option<()> {
-    let [a, b] = *p.edges.get(&Old(e))?;
-    p.at.insert(New(0), position);
-    p.edges.insert(Old(e), [a, New(0)]);
-    p.edges.insert(New(0), [New(0), b]);
-    for cycle in p.faces.values_mut() {
-        let at = around(cycle).position(|ends| ends == (a, b) || ends == (b, a));
-        if let Some(at) = at {
-            cycle.insert(at + 1, New(0));
-        }
-    }
-    Some(())
-}
-
-fn dissolve(before: &Plain, v: V) -> Option<Vec<After>> {
-    let spokes = before.clockwise(v);
-    let left = before.left();
-    let (&first, &last) = (spokes.first()?, spokes.last()?);
-    let is_open = !left.contains_key(&(v, first));
-    let mut p = before.clone();
-    p.at.remove(&v);
-    let at = |n| before.edge_between(v, n);
-    let gap = [at(first)?, at(last)?];
-    let mut states = Vec::new();
-    if spokes.len() == 2 {
-        for c in p.faces.values_mut() {
-            c.retain(|&n| n != v);
-        }
-        states.push(After::new(p, Some(SAME)));
-    } else {
-        // Counter-clockwise around the vertex.
-        let mut rim = Vec::new();
-        let mut corners = Vec::new();
-        let mut faces = Vec::new();
-        for &n in spokes.iter().rev() {
-            let Some(&f) = left.get(&(v, n)) else { continue };
-            let c = rotated(&before.faces[&f], v);
-            rim.extend(&c[1..c.len() - 1]);
-            corners.extend(c[1..].iter().map(|&n| (n, f)));
-            faces.push(f);
-        }
-        if is_open {
-            rim.push(first);
-        }
-        let twice = |n: V| corners.iter().filter(|c| c.0 == n).count() > 1;
-        for n in &spokes {
-            p.edges.remove(&at(*n)?);
-        }
-        for &keeps in &faces {
-            let mut p = p.clone();
-            faces.iter().for_each(|f| drop(p.faces.remove(f)));
-            p.faces.insert(keeps, keeping_first(before, keeps, rim.clone()));
-            let mut state = After::new(p, Some(SAME));
-            state.mixed_faces.insert(keeps);
-            state.mixed_corners = rim.iter().filter(|&&n| twice(n)).map(|&n| (keeps, n)).collect();
-            for &n in rim.iter().filter(|&&n| twice(n)) {
-                let both: Vec<FaceKey> = corners.iter().filter(|c| c.0 == n).map(|c| old_face(c.1)).collect();
-                state.means.extend(both.try_into().map(|both: [FaceKey; 2]| ((keeps, n), both)));
-            }
-            let whole = corners.iter().filter(|c| !twice(c.0));
-            state.corners = whole.map(|&(n, f)| ((keeps, n), (old_face(f), n.key(&[])))).collect();
-            states.push(state);
-        }
-    }
-    if !is_open && spokes.len() > 2 {
-        return Some(states);
-    }
-    // One of the edges at the ends of the gap closes it.
-    let closed = |state: &After, keeps: usize| {
-        let mut state = state.clone();
-        let other = [last, first][keeps];
-        state.plain.edges.remove(&gap[1 - keeps]);
-        let turned = before.edges[&gap[keeps]].map(|n| if n == v { other } else { n });
-        state.plain.edges.insert(gap[keeps], turned);
-        state.mixed_edges.insert(gap[keeps]);
-        state
-    };
-    Some(states.iter().flat_map(|s| [closed(s, 0), closed(s, 1)]).collect())
-}
-
-/// The crate's rule for a polygon, asked about the polygon alone; a quad may take its other diagonal.
-fn triangulate(before: &Plain, f: FaceKey) -> Option<Vec<After>> {
-    let cycle = before.faces.get(&Old(f))?;
-    // The rule breaks ties by the order of vertices.
-    let mut order = cycle.clone();
-    order.sort_unstable();
-    let points = order.iter().map(|v| before.at[v]).collect();
-    let numbers: Vec<u32> =
-        cycle.iter().filter_map(|v| order.binary_search(v).ok()).map(|i| i as u32).collect();
-    let mut alone = Mesh::build(&IndexedMesh::new(points, vec![numbers].into()).ok()?).ok()?;
-    let name: BTreeMap<VertexKey, V> = alone.vertices().zip(order).collect();
-    let only = alone.faces().next()?;
-    let cuts = alone.triangulate_face(only).ok()?.cuts;
-    let corners = |f| alone.face_vertices(f).map(|v| name[&v]).collect::<Vec<V>>();
-    let mut p = before.clone();
-    p.faces.insert(Old(f), keeping_first(before, Old(f), corners(only)));
-    for (i, cut) in cuts.iter().enumerate() {
-        let h = alone.edge_halfedge(cut.edge);
-        let diagonal = [alone.origin(h), alone.target(h)].map(|v| name[&v]);
-        p.edges.insert(New(i), diagonal);
-        p.faces.insert(New(i), corners(cut.face));
-    }
-    let state = |p: Plain| {
-        let mut after = After::new(p, Some(SAME));
-        (0..cuts.len()).for_each(|i| after.carry(New(i), f));
-        after
-    };
-    let blocked = (0..cuts.len()).any(|i| {
-        let [a, b] = p.edges[&New(i)];
-        before.edge_between(a, b).is_some()
-    });
-    if !blocked || cycle.len() != 4 {
-        return Some(vec![state(p)]);
-    }
-    let [a, b] = p.edges[&New(0)];
-    let c = rotated(cycle, a);
-    debug_assert_eq!(c[2], b);
-    let halves = [vec![c[1], c[2], c[3]], vec![c[3], c[0], c[1]]];
-    let other = |new: usize| {
-        let mut p = p.clone();
-        p.faces.insert(New(0), halves[new].clone());
-        p.faces.insert(Old(f), keeping_first(before, Old(f), halves[1 - new].clone()));
-        let h = &halves[new];
-        p.edges.insert(New(0), [h[2], h[0]]);
-        state(p)
-    };
-    Some(vec![other(0), other(1)])
 }

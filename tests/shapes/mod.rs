@@ -101,6 +101,35 @@ pub(crate) fn torus(n: u32, m: u32) -> IndexedMesh {
     pool(points, (0..n).flat_map(|i| (0..m).map(move |j| (i, j))).map(|(i, j)| quad(i, j)).collect())
 }
 
+/// A plate of 100 by 60 by 4 with a round hole of `n` sides, in triangles: long and thin ones around the hole and along
+/// its walls. `n` is a multiple of four.
+pub(crate) fn bracket(n: u32) -> IndexedMesh {
+    let circle = |i: u32| {
+        let angle = (f64::from(i) + 0.5) / f64::from(n) * std::f64::consts::TAU;
+        dvec3(12.0 * angle.cos(), 12.0 * angle.sin(), 0.0)
+    };
+    let corners = [(50., 30.), (-50., 30.), (-50., -30.), (50., -30.)].map(|(x, y)| dvec3(x, y, 0.));
+    let flat: Vec<DVec3> = corners.into_iter().chain((0..n).map(circle)).collect();
+    let m = flat.len() as u32;
+    let ring = |i: u32| 4 + i % n;
+    let mut top: Vec<[u32; 3]> = Vec::new();
+    for i in 0..n {
+        let corner = i / (n / 4);
+        top.push([corner, ring(i + 1), ring(i)]);
+        if (i + 1) % (n / 4) == 0 {
+            top.push([corner, (corner + 1) % 4, ring(i + 1)]);
+        }
+    }
+    let mut triangles: Vec<[u32; 3]> = top.iter().map(|t| t.map(|v| v + m)).collect();
+    triangles.extend(top.iter().map(|&[a, b, c]| [a, c, b]));
+    let outer = (0..4).map(|i| [i, (i + 1) % 4]);
+    for [a, b] in outer.chain((0..n).map(|i| [ring(i + 1), ring(i)])) {
+        triangles.extend([[a, b, b + m], [a, b + m, a + m]]);
+    }
+    let points = flat.iter().copied().chain(flat.iter().map(|p| *p + DVec3::Z * 4.0)).collect();
+    IndexedMesh::from_triangles(points, &triangles).expect("a valid vertex pool")
+}
+
 /// A height field of `n` by `n` squares, each cut in two, with a little noise.
 pub(crate) fn grid(n: u32) -> IndexedMesh {
     let mut noise = Noise(7);
@@ -223,6 +252,7 @@ pub(crate) fn from_raw(raw: &[u8]) -> Result<IndexedMesh, Box<dyn std::error::Er
 }
 
 /// Numbers that look random and are the same on every run (SplitMix64, Steele, Lea and Flood 2014).
+#[derive(Clone)]
 pub(crate) struct Noise(pub(crate) u64);
 
 impl Noise {

@@ -43,6 +43,7 @@ pub(super) fn smooth(session: &mut Session, args: &Smooth) -> Result<Answer, Fai
         (Some(_), Some(_)) => return Err(Failure::Usage("--mu belongs to --method taubin".to_owned())),
         (None | Some(args::SmoothMethod::Laplacian), None) => SmoothMethod::Laplacian,
         (Some(args::SmoothMethod::Cotan), None) => SmoothMethod::Cotangent,
+        (Some(args::SmoothMethod::Implicit), None) => SmoothMethod::Implicit,
     };
     let boundary = match args.boundary {
         args::Boundary::Fixed => Boundary::Fixed,

@@ -8,8 +8,8 @@ use crate::text::{self, counted};
 use crate::{import, output, progress};
 use meshwright::io::Lost;
 use meshwright::{
-    Control, Element, IndexedMesh, Mesh, OutwardOptions, OutwardPart, Record, Report, orient_outward,
-    unify_winding,
+    Control, Element, IndexedMesh, Mesh, OutwardOptions, OutwardPart, Record, Report, UnifyWithError,
+    orient_outward, unify_winding_with,
 };
 use std::collections::BTreeSet;
 
@@ -88,11 +88,16 @@ pub(super) fn unify(session: &mut Session, args: &Unify) -> Result<Answer, Failu
     let (loaded, outcome) = import::indexed(session, &args.file, args.weld.weld)?;
     text::not_carried(&outcome.report).iter().for_each(|line| session.say(line));
     let faces = &outcome.maps.faces;
-    let unified = session.timed(Phase::Run, || unify_winding(&outcome.value.topology()));
+    let unified = session.timed(Phase::Run, || {
+        progress::shown(|hook| unify_winding_with(&outcome.value.topology(), Control::new(hook)))
+    });
     let unified = unified.map_err(|error| {
-        let cycle = |c: &Vec<u32>| c.iter().map(|&f| in_file(faces, f)).collect::<Vec<_>>();
-        let cycles: Vec<_> = error.cycles.iter().map(cycle).collect();
-        let json = session.fields(false).with("orientable", &false).with("cycles", &cycles);
+        let mut json = session.fields(false);
+        if let UnifyWithError::Refused(refused) = &error {
+            let cycle = |c: &Vec<u32>| c.iter().map(|&f| in_file(faces, f)).collect::<Vec<_>>();
+            let cycles: Vec<_> = refused.cycles.iter().map(cycle).collect();
+            json = json.with("orientable", &false).with("cycles", &cycles);
+        }
         Failure::Refused { message: error.to_string(), json }
     })?;
     let mut flipped = flipped_faces(&unified.report);

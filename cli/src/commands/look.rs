@@ -7,13 +7,13 @@ use crate::progress;
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::text::{counted, number, point};
 use meshwright::cleanup::{self, Facts};
-use meshwright::{HalfedgeKey, Mesh, NotClosed};
+use meshwright::{Control, HalfedgeKey, Mesh, NotClosed};
 use std::fmt::Write;
 
 pub(super) fn inspect(session: &mut Session, args: &Inspect) -> Result<Answer, Failure> {
     let loaded = import::load(session, &args.file)?;
     let facts = session.timed(Phase::Run, || {
-        progress::named("inspecting", || cleanup::inspect(&loaded.soup, args.weld.weld))
+        progress::shown(|hook| cleanup::inspect_with(&loaded.soup, args.weld.weld, Control::new(hook)))
     })?;
     let json = session.fields(false).with_all(&facts).with("notes", &loaded.notes);
     Ok(Answer { json, text: describe(&facts), ..Answer::default() })

@@ -1,5 +1,6 @@
-//! Smoothing: Laplacian, Taubin, and along the mean curvature (cotangent weights).
+//! Smoothing: Laplacian, Taubin, and along the mean curvature (cotangent weights), forward and backward.
 
+mod implicit;
 mod weights;
 
 use super::unit_scale;
@@ -27,6 +28,11 @@ pub enum SmoothMethod {
     /// triangle without area adds none. Larger faces count as the crate's one rule cuts them at the start; their
     /// diagonals carry no weight.
     Cotangent,
+    /// The same weights, taken backward (the implicit step of the same paper): vertices go where the pull of the places
+    /// they reach would lead them back. However long a step, it is as stable as many short ones, and no vertex
+    /// leaves the box of all; so `lambda` may be up to 10,000. One iteration costs O(edges) times the root of `lambda`.
+    /// Boundary vertices that [slide](Boundary::Slide) go first, by a step of at most 1.
+    Implicit,
 }
 
 /// What boundary vertices do.
@@ -49,7 +55,7 @@ pub enum Boundary {
 pub struct SmoothOptions<'a> {
     /// What pulls a vertex.
     pub method: SmoothMethod,
-    /// How far a step goes, in `(0, 1]`. 0.5 by default.
+    /// How far a step goes, in `(0, 1]`; for [`SmoothMethod::Implicit`] in `(0, 10000]`. 0.5 by default.
     pub lambda: f64,
     /// How often; for [`SmoothMethod::Taubin`] an iteration is a step of `lambda` and one of `mu`. 1 by default.
     pub iterations: u32,
@@ -78,8 +84,8 @@ impl Default for SmoothOptions<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SmoothError {
-    /// `lambda` is not in `(0, 1]`.
-    #[error("a lambda of {0} is not above 0 and at most 1")]
+    /// `lambda` is not in `(0, 1]`, or for an implicit step not in `(0, 10000]`.
+    #[error("a lambda of {0} is not above 0 and at most 1, or at most 10000 for an implicit step")]
     BadLambda(f64),
     /// `mu` is not below `-lambda`, or infinite.
     #[error("a mu of {mu} is not below -{lambda}")]
@@ -125,7 +131,9 @@ impl Mesh {
     /// ```
     pub fn smooth(&mut self, options: SmoothOptions<'_>) -> Result<(), SmoothError> {
         let SmoothOptions { method, lambda, iterations, boundary, locked, mut control } = options;
-        if !(lambda > 0.0 && lambda <= 1.0) {
+        let is_implicit = matches!(method, SmoothMethod::Implicit);
+        let longest = if is_implicit { implicit::LONGEST } else { 1.0 };
+        if !(lambda > 0.0 && lambda <= longest) {
             return Err(SmoothError::BadLambda(lambda));
         }
         if let SmoothMethod::Taubin { mu } = method
@@ -138,7 +146,8 @@ impl Mesh {
         let scale = unit_scale(self.vertices.live().map(|v| self.positions[v as usize]));
         let mut now: Vec<DVec3> = self.positions.iter().map(|&p| p * scale).collect();
         let mut sums = vec![(DVec3::ZERO, 0.0); now.len()];
-        let apexes = matches!(method, SmoothMethod::Cotangent).then(|| Apexes::new(self));
+        let is_weighted = is_implicit || matches!(method, SmoothMethod::Cotangent);
+        let apexes = is_weighted.then(|| Apexes::new(self));
         let second = if let SmoothMethod::Taubin { mu } = method { Some(mu) } else { None };
         let steps = f64::from(iterations) * if second.is_some() { 2.0 } else { 1.0 };
         let mut done = 0.0;
@@ -146,8 +155,15 @@ impl Mesh {
             for factor in [Some(lambda), second].into_iter().flatten() {
                 sums.fill((DVec3::ZERO, 0.0));
                 let mut tick = |share: f64| control.report("smooth", (done + share) / steps);
-                sum(self, &now, apexes.as_ref(), &mut sums, &mut tick)?;
-                rules.step(&mut now, &sums, factor);
+                if let (true, Some(apexes)) = (is_implicit, &apexes) {
+                    // Without sums, only what slides moves.
+                    rules.step(&mut now, &sums, factor.min(1.0));
+                    let stays = |v: usize| rules.of[v] != Rule::Free;
+                    implicit::step(self, apexes, stays, &mut now, factor, &mut tick)?;
+                } else {
+                    sum(self, &now, apexes.as_ref(), &mut sums, &mut tick)?;
+                    rules.step(&mut now, &sums, factor);
+                }
                 done += 1.0;
             }
         }

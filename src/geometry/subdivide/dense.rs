@@ -1,6 +1,7 @@
 //! The form a level works on: faces, and for each corner its edge.
 
-use super::SubdivideError;
+use super::{SubdivideError, carry};
+use crate::column::Columns;
 use crate::geometry::triangulate::Triangulator;
 use crate::matching::{Chains, NONE, Pairing};
 use crate::{EdgeKey, IndexedMesh, Mesh, Polygons, VertexKey};
@@ -31,8 +32,13 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    pub(super) fn new(mesh: &Mesh, needs_triangles: bool) -> Result<Self, SubdivideError> {
-        let dense = Dense::of(mesh);
+    /// Brings the columns along.
+    pub(super) fn new(
+        mesh: &Mesh,
+        needs_triangles: bool,
+        columns: &mut Columns,
+    ) -> Result<Self, SubdivideError> {
+        let mut dense = Dense::of(mesh);
         if !needs_triangles || dense.polygons.iter().all(|f| f.len() == 3) {
             return Ok(Self { dense, face_source: None, triangulated: None });
         }
@@ -46,14 +52,15 @@ impl Prepared {
             }
         }
         let cut = dense.polygons.iter().filter(|f| f.len() > 3).count();
-        let pool = IndexedMesh::trusted(dense.positions, Polygons::uniform(3, triangles), None);
+        let positions = std::mem::take(&mut dense.positions);
+        let pool = IndexedMesh::trusted(positions, Polygons::uniform(3, triangles), None);
         Mesh::build(&pool).map_err(SubdivideError::NotTriangulable)?;
         let (positions, polygons, _) = pool.into_parts();
-        Ok(Self {
-            dense: Dense::matched(positions, polygons),
-            face_source: Some(source),
-            triangulated: Some(cut),
-        })
+        let triangles = Dense::matched(positions, polygons);
+        if !columns.is_empty() {
+            carry::by_triangles(columns, &dense, &triangles, &source);
+        }
+        Ok(Self { dense: triangles, face_source: Some(source), triangulated: Some(cut) })
     }
 }
 
@@ -109,6 +116,22 @@ impl Dense {
             both[u as usize >> 1][u as usize & 1] = c as u32;
         }
         both
+    }
+
+    /// For each edge its two ends, as its first use runs along it.
+    pub(super) fn ends_of_edges(&self) -> Vec<[u32; 2]> {
+        let mut ends = vec![[NONE; 2]; self.edges];
+        let mut c = 0;
+        for face in self.polygons.iter() {
+            for (i, &a) in face.iter().enumerate() {
+                let u = self.use_of[c];
+                c += 1;
+                if u & 1 == 0 {
+                    ends[u as usize >> 1] = [a, face[if i + 1 == face.len() { 0 } else { i + 1 }]];
+                }
+            }
+        }
+        ends
     }
 
     /// Takes over the creases and corners that the caller names.

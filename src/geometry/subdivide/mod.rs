@@ -3,6 +3,7 @@
 //! A level works on the indexed form with its edge matching. Splitting schemes know how the matching of the finer mesh
 //! follows from the coarser one, so edges are matched once, whatever the number of levels.
 
+mod carry;
 mod dense;
 mod masks;
 mod partial;
@@ -12,6 +13,7 @@ mod sqrt3;
 use super::unit_scale;
 use super::weld::BadAngle;
 use crate::build::lay_out;
+use crate::column::{Columns, Kind};
 use crate::report::{Maps, Outcome, Report, Step, StepSummary};
 use crate::soup::MAX_ELEMENTS;
 use crate::{BuildError, Cancelled, Control, EdgeKey, FaceKey, IndexedMesh, Mesh, VertexKey};
@@ -156,8 +158,18 @@ impl Mesh {
     /// Vertices keep their numbers (those of [`to_indexed`](Self::to_indexed)); those on edges follow, then those
     /// inside faces; the parts of a face stand together in its place, the part at its first corner first. The maps tell
     /// parents: a new vertex comes from one old vertex, from the two ends of the edge it was put on, or from all corners
-    /// of the face it was put in; a new face from the face it is a part of (or the two, for [`Scheme::Sqrt3`]). Attributes
-    /// and user columns are left behind. O(faces of the result).
+    /// of the face it was put in; a new face from the face it is a part of (or the two, for [`Scheme::Sqrt3`]). O(faces of
+    /// the result).
+    ///
+    /// Attributes and user columns come along, the latter under their keys, each by its [`Rule`](crate::Rule), level by
+    /// level. Whatever the scheme does with positions, the sources of a new value are its parents with weights that are
+    /// linear between them: half and half on an edge, all alike in a face. So under [`Scheme::Midpoint`] a linear function
+    /// stays one. Corners have sources in their own face only, so a seam stays a seam and nothing is mixed across it; faces
+    /// and halves of edges are split from one element, edges within faces hold the default. Carried normals are those of
+    /// the coarse mesh, mixed: [compute](Self::compute_normals) them anew where the scheme moves vertices.
+    ///
+    /// The faces of [`Scheme::Sqrt3`] lie across the old edges, half on either side. Each counts to the side of its old
+    /// vertex; at a seam, that side goes on beyond the edge as if mirrored, and the seam runs in a zigzag.
     ///
     /// # Errors
     /// [`SubdivideError`]: dead keys, options the scheme has no rule for, more faces than allowed, faces that cannot be
@@ -190,44 +202,58 @@ impl Mesh {
         control.report("subdivide", 0.0)?;
         let levels = if self.face_count() == 0 { 0 } else { levels };
         let needs_triangles = levels > 0 && matches!(scheme, Scheme::Loop | Scheme::Sqrt3);
-        let prepared = Prepared::new(self, needs_triangles)?;
+        let mut columns = Columns::in_order(self, |_, _| true);
+        let prepared = Prepared::new(self, needs_triangles, &mut columns)?;
         let limit = max_faces.min(MAX_ELEMENTS) as u64;
         let mut report = Report::default();
         if let Some(cut) = prepared.triangulated {
-            report.steps.push(StepSummary { step: Step::Triangulate, changed: cut, tolerance: None });
+            report.steps.push(StepSummary::new(Step::Triangulate, cut));
         }
-        report.steps.push(StepSummary { step: Step::Subdivide, changed: 0, tolerance: None });
-        report.not_carried = self.carried_attributes();
-        let (value, maps, changed) = if let Some(only) = options.only {
-            partial::subdivide(self, only, levels, limit, &mut control)?
+        report.steps.push(StepSummary::new(Step::Subdivide, 0));
+        let (mut value, maps, changed) = if let Some(only) = options.only {
+            partial::subdivide(self, only, levels, limit, &mut columns, &mut control)?
         } else {
             let mut dense = prepared.dense;
             foresee(&dense, scheme, levels, limit)?;
             dense.mark_creases(self, options.creases, options.crease_degrees, options.corners)?;
             let (large, back) = shrink(&mut dense.positions);
             let changed = if levels > 0 { dense.polygons.len() } else { 0 };
-            let (mut dense, maps) = match scheme {
-                Scheme::Sqrt3 => sqrt3::subdivide(dense, prepared.face_source, self, levels, &mut control)?,
-                _ => {
-                    let mut refined = Refined::new(dense, prepared.face_source, self);
-                    for level in 0..levels {
-                        let [from, to] =
-                            [level, level + 1].map(|l| 0.9 * 4f64.powi(l as i32 - levels as i32));
-                        let mut meter = Meter { control: &mut control, from, to };
-                        refined.step(scheme, level + 1 == levels, &mut meter)?;
-                    }
-                    refined.finish()
+            let (mut value, maps) = if scheme == Scheme::Sqrt3 {
+                let source = prepared.face_source;
+                let (dense, maps) =
+                    sqrt3::subdivide(dense, source, self, levels, &mut columns, &mut control)?;
+                control.report("build", 0.9)?;
+                (build(dense)?, maps)
+            } else {
+                let mut refined = Refined::new(dense, prepared.face_source, self);
+                let share =
+                    |level: u32| [level, level + 1].map(|l| 0.9 * 4f64.powi(l as i32 - levels as i32));
+                for level in 1..levels {
+                    let [from, to] = share(level - 1);
+                    let mut meter = Meter { control: &mut control, from, to };
+                    refined.step(scheme, &mut columns, &mut meter)?;
+                }
+                if levels == 0 {
+                    let (dense, maps) = refined.unrefined();
+                    (build(dense)?, maps)
+                } else {
+                    let [from, to] = share(levels - 1);
+                    let mut meter = Meter { control: &mut control, from, to };
+                    refined.last(scheme, self, &mut columns, &mut meter)?
                 }
             };
             if large {
-                dense.positions.iter_mut().for_each(|p| *p *= back);
+                value.positions.iter_mut().for_each(|p| *p *= back);
             }
             control.report("build", 0.9)?;
-            (build(dense)?, maps, changed)
+            (value, maps, changed)
         };
         if let Some(step) = report.steps.last_mut() {
             step.changed = changed;
         }
+        place(&value, &mut columns);
+        value.columns = columns;
+        value.carried = self.carried.clone();
         Ok(Outcome { value, report, maps })
     }
 }
@@ -298,6 +324,20 @@ fn build(dense: Dense) -> Result<Mesh, SubdivideError> {
     match lay_out(&pool, &pairing) {
         Some(mesh) => Ok(mesh),
         None => Mesh::build(&pool).map_err(SubdivideError::Bug),
+    }
+}
+
+/// Brings columns to where the elements of a fresh mesh are: in slots one past their numbers.
+fn place(mesh: &Mesh, columns: &mut Columns) {
+    for (kind, count) in [
+        (Kind::Vertex, mesh.vertex_count() as u32),
+        (Kind::Edge, mesh.edge_count() as u32),
+        (Kind::Face, mesh.face_count() as u32),
+    ] {
+        columns.place(kind, count as usize + 1, 1..count + 1);
+    }
+    if !columns.none_on(Kind::Corner) {
+        columns.place(Kind::Corner, mesh.next.len(), mesh.ordered_slots(Kind::Corner).into_iter());
     }
 }
 

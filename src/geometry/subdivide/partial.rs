@@ -1,7 +1,9 @@
 //! Midpoint subdivision of some faces; neighbours are closed so that no vertex lies on an edge.
 
+use super::carry::{self, Spot};
 use super::dense::Dense;
 use super::{Meter, SubdivideError, build, followed};
+use crate::column::Columns;
 use crate::matching::NONE;
 use crate::report::{Maps, Relation};
 use crate::soup::MAX_ELEMENTS;
@@ -14,6 +16,7 @@ pub(super) fn subdivide(
     only: &[FaceKey],
     levels: u32,
     limit: u64,
+    columns: &mut Columns,
     control: &mut Control<'_>,
 ) -> Result<(Mesh, Maps, usize), SubdivideError> {
     let mut rank = vec![NONE; mesh.faces.slot_count()];
@@ -33,7 +36,7 @@ pub(super) fn subdivide(
         let mut meter = Meter { control: &mut *control, from, to };
         let cut = Cut::new(&dense, &selected);
         cut.check(level + 1, limit)?;
-        let (next, next_selected, next_maps, cut_faces) = cut.run(&mut meter)?;
+        let (next, next_selected, next_maps, cut_faces) = cut.run(columns, &mut meter)?;
         maps = if level == 0 { next_maps } else { followed(&maps, &next_maps) };
         if level == 0 {
             changed = cut_faces;
@@ -92,7 +95,11 @@ impl<'d> Cut<'d> {
         Ok(())
     }
 
-    fn run(self, meter: &mut Meter<'_, '_>) -> Result<(Dense, Vec<bool>, Maps, usize), SubdivideError> {
+    fn run(
+        self,
+        columns: &mut Columns,
+        meter: &mut Meter<'_, '_>,
+    ) -> Result<(Dense, Vec<bool>, Maps, usize), SubdivideError> {
         let dense = self.dense;
         let old = dense.positions.len();
         let faces = dense.polygons.len();
@@ -104,6 +111,9 @@ impl<'d> Cut<'d> {
         let mut selected = Vec::new();
         let (mut c, mut cut_faces) = (0, 0);
         let mut middles = Vec::new();
+        // For each part its face, and for each corner of it its spot there.
+        let is_carrying = !columns.is_empty();
+        let (mut source, mut spots) = (Vec::new(), Vec::new());
         for (f, face) in dense.polygons.iter().enumerate() {
             meter.tick(f, faces)?;
             let n = face.len();
@@ -139,14 +149,28 @@ impl<'d> Cut<'d> {
             for part in before..polygons.len() {
                 face_pairs.push((f as u32, part as u32));
                 selected.push(self.selected[f]);
+                if is_carrying {
+                    source.push(f as u32);
+                    spots.extend(polygons[part].iter().map(|&v| spot(v, face, &middles)));
+                }
             }
         }
         let maps = Maps {
             vertices: Relation::from_pairs(old, positions.len(), vertex_pairs),
             faces: Relation::from_pairs(faces, polygons.len(), face_pairs),
         };
-        Ok((Dense::matched(positions, polygons), selected, maps, cut_faces))
+        let finer = Dense::matched(positions, polygons);
+        if is_carrying {
+            carry::by_spots(columns, dense, &finer, &source, &spots);
+        }
+        Ok((finer, selected, maps, cut_faces))
     }
+}
+
+/// Where a corner of a part lies in its face.
+fn spot(v: u32, face: &[u32], middles: &[u32]) -> Spot {
+    let place = |of: &[u32]| of.iter().position(|&w| w == v).map(|i| i as u32);
+    place(face).map_or_else(|| place(middles).map_or(Spot::Center, Spot::Middle), Spot::Corner)
 }
 
 /// Cuts a triangle with vertices on some of its sides into triangles.

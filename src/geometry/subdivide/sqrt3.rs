@@ -1,8 +1,10 @@
 //! Kobbelt's scheme: a centre in every triangle, every inner edge flipped; boundary edges cut in three at every second
 //! level.
 
+use super::carry::{Born, Sources, old_vertices, part, split};
 use super::dense::Dense;
 use super::{Meter, SubdivideError, followed};
+use crate::column::{Columns, Kind, Origin};
 use crate::matching::NONE;
 use crate::report::{Maps, Relation};
 use crate::{Control, Mesh, Polygons};
@@ -13,6 +15,7 @@ pub(super) fn subdivide(
     face_source: Option<Vec<u32>>,
     mesh: &Mesh,
     levels: u32,
+    columns: &mut Columns,
     control: &mut Control<'_>,
 ) -> Result<(Dense, Maps), SubdivideError> {
     let vertices = dense.positions.len();
@@ -31,8 +34,11 @@ pub(super) fn subdivide(
         let (polygons, next) = step.faces(&mut meter)?;
         maps = if level == 0 && maps.faces.is_identity() { next } else { followed(&maps, &next) };
         meter.advance(3, 4)?;
-        let positions = step.positions();
-        dense = Dense::matched(positions, polygons);
+        let finer = Dense::matched(step.positions(), polygons);
+        if !columns.is_empty() {
+            step.carry(columns, &finer);
+        }
+        dense = finer;
     }
     Ok((dense, maps))
 }
@@ -164,5 +170,103 @@ impl<'d> Step<'d> {
             }
         }
         positions
+    }
+    /// The corners of its face between which the vertex lies that stands for its centre as a corner's edge sees it.
+    fn parents(&self, corner: usize) -> Sources {
+        let (first, i) = ((corner - corner % 3) as u32, corner as u32 % 3);
+        match self.open_side[corner / 3] {
+            NONE => (first..first + 3).map(|c| (c, 1.0 / 3.0)).collect(),
+            open => {
+                let near = if i == (open + 1) % 3 { 1.0 / 3.0 } else { 2.0 / 3.0 };
+                smallvec::smallvec![(first + open, near), (first + (open + 1) % 3, 1.0 - near)]
+            }
+        }
+    }
+
+    /// The same beyond a corner's edge as this side of it goes on: as if the other face mirrored this one.
+    fn mirrored(&self, corner: usize, mate: usize) -> Sources {
+        let [own, next, apex] = [0, 1, 2].map(|i| (corner - corner % 3 + (corner + i) % 3) as u32);
+        let (mut weights, mut beyond) = ([0.0; 2], 0.0);
+        for (c, weight) in self.parents(mate) {
+            match (c as usize + 3 - mate % 3) % 3 {
+                0 => weights[1] += weight,
+                1 => weights[0] += weight,
+                _ => beyond += weight,
+            }
+        }
+        let all = [(own, weights[0] + beyond), (next, weights[1] + beyond), (apex, -beyond)];
+        all.into_iter().filter(|s| s.1 != 0.0).collect()
+    }
+
+    /// The columns of the finer mesh. Every part lies on both sides of an old edge; it counts to the side of its old
+    /// corner, and across a seam that side goes on.
+    fn carry(&self, columns: &mut Columns, finer: &Dense) {
+        let dense = self.dense;
+        let vertex_of = dense.polygons.corners();
+        columns.derive(Kind::Vertex, finer.positions.len(), &|emit| {
+            old_vertices(dense, &finer.positions, emit);
+            let mut tell = |corner: usize| {
+                let corners = self.parents(corner);
+                let ends: Sources = corners.iter().map(|&(c, w)| (vertex_of[c as usize], w)).collect();
+                emit(split(&ends));
+            };
+            for (f, &open) in self.open_side.iter().enumerate() {
+                match open as usize {
+                    _ if open == NONE => tell(3 * f),
+                    // As seen by the sides before and after the open one.
+                    open => [2, 1].map(|k| 3 * f + (open + k) % 3).into_iter().for_each(&mut tell),
+                }
+            }
+        });
+        let turn = |c: usize, k: usize| c - c % 3 + (c + k) % 3;
+        columns.derive(Kind::Corner, finer.use_of.len(), &|emit| {
+            for (c, &mate) in self.mates.iter().enumerate() {
+                let [_, next, apex] = [0, 1, 2].map(|k| turn(c, k));
+                if mate != NONE {
+                    let (m, own) = (mate as usize, self.parents(c));
+                    let pairs = [[c as u32, turn(m, 1) as u32], [next as u32, mate]];
+                    emit(Origin::Same(c as u32));
+                    let (beyond, here) = (self.parents(m), self.mirrored(c, m));
+                    emit(Origin::Across { pairs, beyond: &beyond, here: &here });
+                    emit(split(&own));
+                } else if self.open_side[c / 3] == NONE {
+                    emit(Origin::Same(c as u32));
+                    emit(Origin::Same(next as u32));
+                    emit(split(&self.parents(c)));
+                } else {
+                    emit(split(&self.parents(apex)));
+                    emit(split(&self.parents(next)));
+                    emit(Origin::Same(apex as u32));
+                }
+            }
+        });
+        if !columns.none_on(Kind::Edge) {
+            let mut born = vec![Born::Inside; finer.edges];
+            let mut set = |corner: usize, of: Born| born[finer.use_of[corner] as usize >> 1] = of;
+            let edge = |c: usize| dense.use_of[c] >> 1;
+            for (c, &mate) in self.mates.iter().enumerate() {
+                let open = self.open_side[c / 3];
+                if mate != NONE {
+                    set(3 * c + 1, Born::Whole(edge(c)));
+                } else if open == NONE {
+                    set(3 * c, Born::Whole(edge(c)));
+                } else {
+                    // The third in the middle, and those that the parts beside it have.
+                    let (before, after) = (turn(c, 2), turn(c, 1));
+                    set(3 * c, Born::Part(edge(c)));
+                    set(3 * after + 2, Born::Part(edge(c)));
+                    if self.mates[before] != NONE {
+                        set(3 * self.mates[before] as usize, Born::Part(edge(c)));
+                    }
+                }
+            }
+            columns.derive(Kind::Edge, finer.edges, &|emit| born.iter().for_each(|b| b.tell(emit)));
+        }
+        columns.derive(Kind::Face, finer.polygons.len(), &|emit| {
+            for (c, &mate) in self.mates.iter().enumerate() {
+                let own = c as u32 / 3;
+                if mate == NONE { part(emit, own) } else { emit(split(&[(own, 0.5), (mate / 3, 0.5)])) }
+            }
+        });
     }
 }

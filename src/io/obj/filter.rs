@@ -3,6 +3,7 @@
 use super::super::Limits;
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::text::{is_blank, number, number_at, words};
+use super::super::watch::Watch;
 use super::corner::{self, Attribute, Index};
 use super::statement::Statements;
 use crate::{CornerData, Group, PolygonSoup, Polygons};
@@ -36,7 +37,8 @@ pub(super) struct Held {
 }
 
 /// A reader of plain OBJ text over the file's text.
-pub(super) struct Filter<'a> {
+pub(super) struct Filter<'a, 'w, 'c> {
+    watch: &'a mut Watch<'w, 'c>,
     text: &'a [u8],
     statements: Statements<'a>,
     limits: Limits,
@@ -71,9 +73,10 @@ struct Seen {
     face: Vec<u32>,
 }
 
-impl<'a> Filter<'a> {
-    pub(super) fn new(text: &'a [u8], limits: Limits) -> Self {
+impl<'a, 'w, 'c> Filter<'a, 'w, 'c> {
+    pub(super) fn new(text: &'a [u8], limits: Limits, watch: &'a mut Watch<'w, 'c>) -> Self {
         Self {
+            watch,
             text,
             statements: Statements::new(text),
             limits,
@@ -135,7 +138,8 @@ impl<'a> Filter<'a> {
                 self.end();
                 return;
             };
-            if let Err(error) = self.statement(line, &statement) {
+            let watched = self.watch.tick(self.statements.left()).map_err(ReadError::from);
+            if let Err(error) = watched.and_then(|()| self.statement(line, &statement)) {
                 self.error = Some((line, error));
                 self.is_ended = true;
                 self.plain.clear();
@@ -407,7 +411,7 @@ impl Seen {
     }
 }
 
-impl Read for Filter<'_> {
+impl Read for Filter<'_, '_, '_> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let text = self.fill_buf()?;
         let count = text.len().min(buffer.len());
@@ -417,7 +421,7 @@ impl Read for Filter<'_> {
     }
 }
 
-impl BufRead for Filter<'_> {
+impl BufRead for Filter<'_, '_, '_> {
     fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
         while self.at == self.plain.len() && !self.is_ended {
             self.fill();

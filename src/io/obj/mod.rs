@@ -16,6 +16,7 @@ pub use write::write_obj;
 
 use super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::text::{number, number_at, without_mark, words};
+use super::watch::Watch;
 use super::{Limits, Loaded};
 use crate::{PolygonSoup, Polygons};
 use filter::{Filter, Kept};
@@ -44,8 +45,13 @@ use std::path::Path;
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read_obj(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+    super::read(bytes, super::Format::Obj, limits)
+}
+
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let text = without_mark(bytes)?;
-    let mut filter = Filter::new(text, *limits);
+    watch.leave_after_bytes(0.5);
+    let mut filter = Filter::new(text, *limits, watch);
     let options = tobj::LoadOptions {
         single_index: false,
         triangulate: false,
@@ -53,7 +59,10 @@ pub fn read_obj(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
         ignore_lines: false,
     };
     let loaded = tobj::load_obj_buf(&mut filter, &options, |_: &Path| Err(tobj::LoadError::OpenFileFailed));
-    let kept = filter.finish().map_err(|(line, error)| blame(text, line).unwrap_or(error))?;
+    let kept = filter.finish().map_err(|(line, error)| match error {
+        ReadError::Cancelled(_) => error,
+        _ => blame(text, line).unwrap_or(error),
+    })?;
     if kept.statements == 0 && !is_remark(text) {
         let reason = if text.is_empty() { Malformed::Empty } else { Malformed::Beginning("an OBJ file") };
         return Err(ReadError::line(1, reason));

@@ -13,6 +13,11 @@ impl<'a> Statements<'a> {
         Self { lines: Lines::new(text) }
     }
 
+    /// How many bytes are left.
+    pub(super) fn left(&self) -> usize {
+        self.lines.left()
+    }
+
     fn joined(&mut self, first: &[u8]) -> Vec<u8> {
         let mut joined = first.to_vec();
         for (_, line) in self.lines.by_ref() {

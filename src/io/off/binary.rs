@@ -1,13 +1,14 @@
 //! `OFF BINARY`.
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
+use super::super::watch::Watch;
 use super::super::{Limits, Loaded};
 use crate::PolygonSoup;
 use glam::DVec3;
 
 /// `OFF BINARY`: counts and indices of 32 bits, coordinates in single precision; big-endian by the book, little-endian in
 /// life; with or without a colour count behind each face.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let start = bytes.iter().position(|&b| b == b'\n').map_or(bytes.len(), |i| i + 1);
     let data = &bytes[start..];
     let word = |i: usize| data.get(4 * i..4 * i + 4).and_then(|b| <[u8; 4]>::try_from(b).ok());
@@ -31,6 +32,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     let mut notes = Notes::default();
     let mut soup = PolygonSoup::default();
     for v in 0..vertices as usize {
+        watch.tick(data.len() - 12 * v)?;
         let mut p = DVec3::ZERO;
         for i in 0..3 {
             p[i] = f64::from(f32::from_bits(get(3 + 3 * v + i, "a vertex")?));
@@ -51,6 +53,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     let colors = end(false) != Some(data.len() / 4) && end(true) == Some(data.len() / 4);
     let mut at = first;
     for _ in 0..faces {
+        watch.tick(data.len().saturating_sub(4 * at))?;
         let place = Place::Byte((start + 4 * at) as u64);
         let degree = get(at, "a face")? as usize;
         let room = (data.len() / 4).saturating_sub(at + 1);

@@ -10,6 +10,7 @@ use super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::text::{
     Lines, before_comment, integer, is_blank, is_integer, number_at, shown, without_mark, words,
 };
+use super::watch::Watch;
 use super::{Limits, Loaded};
 use crate::{PolygonSoup, Polygons};
 use glam::DVec3;
@@ -30,11 +31,15 @@ use glam::DVec3;
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read_off(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+    super::read(bytes, super::Format::Off, limits)
+}
+
+pub(super) fn read(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Result<Loaded, ReadError> {
     let text = without_mark(bytes)?;
     let mut file = Words::new(text);
     let header = Header::read(&mut file)?;
     if header.binary {
-        return binary::read(bytes, limits);
+        return binary::read(bytes, limits, watch);
     }
     let mut notes = Notes::default();
     let (_, vertices) = file.count("the number of vertices")?;
@@ -58,6 +63,7 @@ pub fn read_off(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     let mut uvs = Vec::new();
     soup.positions.reserve(vertices);
     for _ in 0..vertices {
+        watch.tick(file.lines.left())?;
         let (line, p) = file.vector("a vertex")?;
         if !p.is_finite() {
             notes.add(NoteKind::NonFiniteCoordinate, Place::Line(line));
@@ -89,6 +95,7 @@ pub fn read_off(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
     soup.polygons = Polygons::with_capacity(faces, (3 * faces).min(text.len() / 2));
     let mut corners = Vec::new();
     for _ in 0..faces {
+        watch.tick(file.lines.left())?;
         corners.clear();
         read_face(&mut file, vertices, &mut corners, &mut notes)?;
         limits.check_corners((soup.polygons.corners().len() + corners.len()) as u64)?;

@@ -2,11 +2,17 @@
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::text::{Lines, integer, number_at, shown, words};
+use super::super::watch::Watch;
 use super::header::{Element, Header, Scalar};
 use super::read::{Reader, Role};
 use crate::PolygonSoup;
 
-pub(super) fn read(reader: &mut Reader, header: &Header, data: &[u8]) -> Result<(), ReadError> {
+pub(super) fn read(
+    reader: &mut Reader,
+    header: &Header,
+    data: &[u8],
+    watch: &mut Watch<'_, '_>,
+) -> Result<(), ReadError> {
     let mut rows = Rows { lines: Lines::new(data), header_lines: header.lines, last: 0, in_remark: false };
     let mut row = Row::default();
     for element in &header.elements {
@@ -15,6 +21,7 @@ pub(super) fn read(reader: &mut Reader, header: &Header, data: &[u8]) -> Result<
             continue;
         }
         for _ in 0..element.count {
+            watch.tick(rows.lines.left())?;
             let Some((line, content)) = rows.next(&mut reader.notes) else {
                 let last = header.lines + rows.last;
                 return Err(ReadError::line(last, Malformed::Truncated("the elements")));

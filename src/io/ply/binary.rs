@@ -1,22 +1,28 @@
 //! Elements as bytes, one behind the other.
 
 use super::super::error::{Malformed, NoteKind, Place, ReadError};
+use super::super::watch::Watch;
 use super::header::{Element, Encoding, Header, Scalar};
 use super::read::{Reader, Role, VertexLayout};
 use crate::PolygonSoup;
 
-pub(super) fn read(reader: &mut Reader, header: &Header, data: &[u8]) -> Result<(), ReadError> {
+pub(super) fn read(
+    reader: &mut Reader,
+    header: &Header,
+    data: &[u8],
+    watch: &mut Watch<'_, '_>,
+) -> Result<(), ReadError> {
     let mut input = Input { data, at: 0, start: header.end, is_big: header.encoding == Encoding::Big };
     for element in &header.elements {
         let role = reader.role(element, input.place(), data.len() - input.at);
         match (&role, element.fixed_bytes()) {
             (Role::Vertex(layout), Some(size)) => {
-                take_vertices(reader, &mut input, element, layout, size)?;
+                take_vertices(reader, &mut input, element, layout, size, watch)?;
             }
             (Role::Other, Some(size)) => {
                 input.elements(element.count, size)?;
             }
-            _ => read_varying(reader, &mut input, element, &role)?,
+            _ => read_varying(reader, &mut input, element, &role, watch)?,
         }
     }
     if input.at < data.len() {
@@ -32,6 +38,7 @@ fn take_vertices(
     element: &Element,
     layout: &VertexLayout,
     size: usize,
+    watch: &mut Watch<'_, '_>,
 ) -> Result<(), ReadError> {
     let first = input.start + input.at;
     let bytes = input.elements(element.count, size)?;
@@ -45,7 +52,9 @@ fn take_vertices(
         })
         .collect();
     let is_big = input.is_big;
+    let left = input.data.len() - input.at + bytes.len();
     for (i, vertex) in bytes.chunks_exact(size).enumerate() {
+        watch.tick(left - i * size)?;
         let value = |property: usize| {
             let value =
                 places.get(property).and_then(|&(scalar, at)| scalar.decode(vertex.get(at..)?, is_big));
@@ -62,9 +71,11 @@ fn read_varying(
     input: &mut Input<'_>,
     element: &Element,
     role: &Role,
+    watch: &mut Watch<'_, '_>,
 ) -> Result<(), ReadError> {
     let (mut values, mut corners, mut texcoords) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..element.count {
+        watch.tick(input.data.len() - input.at)?;
         let start = input.at;
         let place = input.place();
         values.clear();

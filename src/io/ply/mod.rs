@@ -11,5 +11,6 @@ mod header;
 mod read;
 mod write;
 
+pub(super) use read::read;
 pub use read::read_ply;
 pub use write::{write_ply, write_ply_ascii, write_ply_big_endian};

@@ -1,6 +1,7 @@
 //! Reading PLY.
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
+use super::super::watch::Watch;
 use super::super::{Limits, Loaded};
 use super::header::{self, Element, Encoding, Header};
 use crate::{CornerData, PolygonSoup, Polygons};
@@ -22,6 +23,14 @@ use glam::DVec3;
 /// # Ok::<(), meshwright::io::ReadError>(())
 /// ```
 pub fn read_ply(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
+    super::super::read(bytes, super::super::Format::Ply, limits)
+}
+
+pub(in crate::io) fn read(
+    bytes: &[u8],
+    limits: &Limits,
+    watch: &mut Watch<'_, '_>,
+) -> Result<Loaded, ReadError> {
     let mut notes = Notes::default();
     let header = header::read(bytes, &mut notes)?;
     let data = &bytes[header.end..];
@@ -37,8 +46,8 @@ pub fn read_ply(bytes: &[u8], limits: &Limits) -> Result<Loaded, ReadError> {
         notes,
     };
     match header.encoding {
-        Encoding::Ascii => super::ascii::read(&mut reader, &header, data)?,
-        Encoding::Little | Encoding::Big => super::binary::read(&mut reader, &header, data)?,
+        Encoding::Ascii => super::ascii::read(&mut reader, &header, data, watch)?,
+        Encoding::Little | Encoding::Big => super::binary::read(&mut reader, &header, data, watch)?,
     }
     Ok(reader.finish())
 }

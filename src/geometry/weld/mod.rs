@@ -1,8 +1,10 @@
 //! Weld: vertices nearer than a tolerance become one. Unweld: the surface is parted where it turns sharply.
 
+mod columns;
+
 use super::normals::double_area_vector;
 use super::{direction, unit_scale};
-use crate::cleanup::{CleanError, CleanOptions, Weld, clean};
+use crate::cleanup::{CleanError, CleanOptions, Weld, clean_tracked};
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Outcome, Record, Relation, Report, Step, StepSummary};
 use crate::{BuildError, Cancelled, Control, EdgeKey, IndexedMesh, Mesh, Polygons};
@@ -56,9 +58,17 @@ impl Mesh {
     /// Merges vertices: each joins the lowest vertex kept so far that is nearer than the tolerance, and is kept, where
     /// it is, if there is none. Kept vertices stay at least a tolerance apart, so nothing drifts along a chain.
     ///
-    /// This is [`clean`] on the mesh: what the merges fold or double is repaired on record, faces that no longer fit
+    /// This is [`clean`](crate::cleanup::clean) on the mesh: what the merges fold or double is repaired on record, faces that
+    /// no longer fit
     /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
-    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. Welding again changes nothing. Linear time.
+    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. If all merges are taken back, nothing is on record.
+    /// Welding again changes nothing, but where surfaces cross so often that merges were taken back to make room for
+    /// others. Linear time.
+    ///
+    /// User columns come along under their keys, each by its [`Rule`](crate::Rule). A vertex that merged others has its own
+    /// value at weight 1 and theirs at 0, as it stays where it is: `keep` and `interpolate` give its own, `average` the
+    /// mean of all, `reset` the default. Two edges that become one count alike; corners and faces keep what they have, and
+    /// the parts of a face that was cut have the rule's answer to a split of it.
     ///
     /// # Errors
     /// [`CleanError::BadTolerance`] on a tolerance that is negative, NaN or infinite; when cancelled.
@@ -75,10 +85,16 @@ impl Mesh {
     /// ```
     pub fn weld(&self, options: WeldOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
         let WeldOptions { tolerance, control } = options;
-        clean(
-            &self.to_indexed().into(),
-            CleanOptions { weld: Weld::Within(tolerance), control, ..Default::default() },
-        )
+        let options = CleanOptions { weld: Weld::Within(tolerance), control, ..Default::default() };
+        let (mut outcome, sources) = clean_tracked(&self.to_indexed().into(), options)?;
+        // Merged and parted again, it is as it was: edges that had more faces in between are nobody's concern.
+        if !outcome.report.records.is_empty() && outcome.value.to_indexed() == self.to_indexed() {
+            outcome.report.records.clear();
+            outcome.report.steps.iter_mut().for_each(|step| step.changed = 0);
+        }
+        let columns = columns::welded(self, &outcome.value, &outcome.maps.vertices, &sources);
+        outcome.value.adopt_columns(columns);
+        Ok(outcome)
     }
 
     /// Parts the surface along sharp edges, the inverse of a weld: around each vertex, the faces between two sharp
@@ -88,7 +104,9 @@ impl Mesh {
     /// The fan with the lowest face keeps the vertex's number; further ones are numbered at the end, by vertex and
     /// then clockwise from there. Faces keep theirs. Each parted edge is on record. Attributes are
     /// copied, normals of vertices among them: [compute](Self::compute_normals) them anew to have hard edges. User
-    /// columns are left behind. O(elements).
+    /// columns come along under their keys: a vertex or edge that was added has what the column's [`Rule`](crate::Rule) makes
+    /// of a split of the one it was (under `reset` the default, under others the same value); all else keeps what it has.
+    /// O(elements).
     ///
     /// # Errors
     /// [`UnweldError`] on an angle outside 0 to 180 degrees; when cancelled.
@@ -112,18 +130,17 @@ impl Mesh {
         control.report("part fans", 0.3)?;
         let fans = Fans::part(self, &is_sharp);
         control.report("build", 0.6)?;
-        let value = Mesh::build(&fans.pool(self)).map_err(UnweldError::Bug)?;
+        let mut value = Mesh::build(&fans.pool(self)).map_err(UnweldError::Bug)?;
         let records = fans.parted(self);
         let changed = fans.added.len();
-        let report = Report {
-            steps: vec![StepSummary { step: Step::Unweld, changed, tolerance: None }],
-            records,
-            ..Report::default()
-        };
+        let report =
+            Report { steps: vec![StepSummary::new(Step::Unweld, changed)], records, ..Report::default() };
         let (old, new) = (fans.order.len(), value.vertex_count());
         let stay = (0..old as u32).map(|v| (v, v));
         let split = fans.added.iter().zip(old as u32..).map(|(&v, new)| (fans.number[v as usize], new));
         let vertices = Relation::from_pairs(old, new, stay.chain(split));
+        let added: Vec<u32> = fans.added.iter().map(|&v| fans.number[v as usize]).collect();
+        value.adopt_columns(columns::unwelded(self, &value, &added));
         Ok(Outcome { value, report, maps: Maps { vertices, faces: Relation::identity(self.face_count()) } })
     }
 
@@ -257,12 +274,8 @@ impl Fans {
             let ends = [2 * e, 2 * e + 1].map(|h| mesh.origin[h as usize]);
             let [a, b] = ends.map(|v| self.number[v as usize]);
             let [p, q] = ends.map(|v| mesh.positions[v as usize]);
-            Record {
-                step: Step::Unweld,
-                kind: Kind::SharpEdge,
-                element: Element::Edge([a.min(b), a.max(b)]),
-                place: Some(p * 0.5 + q * 0.5),
-            }
+            let element = Element::Edge([a.min(b), a.max(b)]);
+            Record::new(Step::Unweld, Kind::SharpEdge, element, Some(p * 0.5 + q * 0.5))
         };
         mesh.edges.live().filter(inner).filter(parted).map(record).collect()
     }
