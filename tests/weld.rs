@@ -5,11 +5,11 @@ mod corpus;
 mod naive;
 mod shapes;
 
-use meshwright::cleanup::{CleanError, Weld, index};
+use meshwright::cleanup::{Weld, index};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
     Control, Element, IndexedMesh, Kind, Mesh, Outcome, PolygonSoup, Progress, Step, UnweldError,
-    UnweldOptions, WeldOptions,
+    UnweldOptions, WeldError, WeldOptions,
 };
 use proptest::prelude::*;
 use std::ops::ControlFlow;
@@ -116,7 +116,7 @@ fn a_tolerance_that_makes_no_sense_is_refused() {
     let mesh = shapes::mesh(&shapes::cube());
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let refused = mesh.weld(WeldOptions { tolerance, ..Default::default() });
-        assert!(matches!(refused, Err(CleanError::BadTolerance(_))));
+        assert!(matches!(refused, Err(WeldError::BadTolerance(_))));
     }
 }
 
@@ -130,7 +130,7 @@ fn weld_and_unweld_can_be_cancelled() {
             if count > stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let options = WeldOptions { tolerance: 0.1, control: Control::new(&mut hook) };
-        assert!(matches!(mesh.weld(options), Err(CleanError::Cancelled(_))), "{stop}");
+        assert!(matches!(mesh.weld(options), Err(WeldError::Cancelled(_))), "{stop}");
         count = 0;
         let mut hook = |_: Progress| {
             count += 1;
@@ -215,6 +215,9 @@ fn unwelding_corpus_meshes_and_welding_them_gives_them_back() {
     for row in rows.iter().filter(|r| r.is_readable()) {
         let Ok(soup) = row.load() else { continue };
         let mesh = meshwright::cleanup::clean(&soup, Default::default()).expect("always answers").value;
+        if mesh.vertex_count() == 0 {
+            continue;
+        }
         let parted = unweld(&mesh, 20.0);
         assert_eq!(parted.value.face_count(), mesh.face_count(), "{}", row.path);
         for record in &parted.report.records {
@@ -246,7 +249,8 @@ proptest! {
         let outcome = weld(&shapes::mesh(&pool), t);
         let expected = naive::weld(pool.positions(), t);
         // What splitting takes back keeps its own place.
-        let split = outcome.report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0);
+        let split = outcome.report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0)
+            || outcome.value.vertex_count() == pool.vertex_count();
         for (v, &kept) in expected.iter().enumerate() {
             for &new in outcome.maps.vertices.new_of(v) {
                 let at = outcome.value.position(outcome.value.vertices().nth(new as usize).expect("there"));
