@@ -90,7 +90,8 @@ fn the_predicate_is_asked_about_the_near_side_and_at_most_once() {
 fn smooth_regions_are_what_the_feature_edges_leave_connected() {
     for mesh in all() {
         for degrees in [12.0, 60.0, 90.0 - 1e-4, f64::NAN] {
-            let sharp: BTreeSet<_> = mesh.feature_edges(FeatureOptions { degrees, boundary: false }).collect();
+            let sharp: BTreeSet<_> =
+                mesh.feature_edges(FeatureOptions { degrees, boundary: false }).collect();
             for f in mesh.faces() {
                 let expected = mesh.grow_region(f, |h| !sharp.contains(&mesh.edge(h)));
                 assert!(mesh.smooth_region(f, degrees).eq(expected));

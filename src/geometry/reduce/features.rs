@@ -1,9 +1,9 @@
 //! What must be kept: boundaries, seams, borders of groups, sharp edges, and what the caller locked.
 
-use super::{ReduceError, ReduceOptions};
 use super::copy::Copy;
 use super::part::Part;
 use super::quadric::Planes;
+use super::{ReduceError, ReduceOptions};
 use crate::column::Kind;
 use crate::{FeatureOptions, Mesh};
 use glam::DVec3;

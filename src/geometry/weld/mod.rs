@@ -97,15 +97,24 @@ fn is_split(report: &Report) -> bool {
     report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0)
 }
 
-/// What a weld makes less of: faces, boundary edges, places, vertices; the first that differs counts. A round after which
-/// there is not less is not worth it, so there are finitely many, and none after the last.
-fn extent(mesh: &Mesh) -> [usize; 4] {
+/// What a weld makes less of: places, corners, boundary edges, vertices, and what the number of faces lacks to the largest;
+/// the first that differs counts. A round after which there is not less is not worth it, so there are finitely many, and
+/// none after the last. What lies in the middle of an
+/// edge between two faces is not counted: a weld may put vertices there to part edges.
+fn extent(mesh: &Mesh) -> [usize; 5] {
+    let is_open = |h: u32| mesh.face[h as usize] == NONE;
+    let mut ends = vec![0u32; mesh.vertices.slot_count()];
+    let halfedges = || mesh.edges.live().flat_map(|e| [2 * e, 2 * e + 1]);
+    halfedges().for_each(|h| ends[mesh.origin[h as usize] as usize] += 1 + u32::from(is_open(h)));
+    let counts = |v: u32| ends[v as usize] != 2;
+    let corners = halfedges().filter(|&h| !is_open(h) && counts(mesh.origin[h as usize])).count();
+    let boundary = halfedges().filter(|&h| is_open(h)).count();
     // Adding zero makes one of both zeros.
     let place = |v: u32| (mesh.positions[v as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
-    let mut places: Vec<[u64; 3]> = mesh.vertices.live().map(place).collect();
+    let mut places: Vec<[u64; 3]> = mesh.vertices.live().filter(|&v| counts(v)).map(place).collect();
     places.sort_unstable();
     places.dedup();
-    [mesh.face_count(), mesh.boundary_halfedges().count(), places.len(), mesh.vertex_count()]
+    [places.len(), corners, boundary, mesh.vertex_count(), usize::MAX - mesh.face_count()]
 }
 
 impl Mesh {
@@ -117,10 +126,10 @@ impl Mesh {
     /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
     /// numbering of [`to_indexed`](Self::to_indexed) to the result's.
     ///
-    /// Where merges were taken back, the result is welded again, as long as that leaves fewer faces, or as many and fewer
-    /// boundary edges, or else places, or else vertices. A weld that leaves none of them fewer is not done at all, and
-    /// nothing is on record. So welding again with the same tolerance changes nothing. Linear time without merges taken
-    /// back, else so for each of a few rounds.
+    /// Where merges were taken back, the result is welded again, as long as that leaves fewer places where vertices are, or as many and
+    /// fewer corners, or else boundary edges, or else vertices, or else cuts a face. A weld that does none of that is not
+    /// done at all, and nothing is on record. So welding again with the same tolerance changes nothing. Linear time, for each of a few
+    /// rounds where merges were taken back.
     ///
     /// User columns come along under their keys, each by its [`Rule`](crate::Rule). A vertex that merged others has its own
     /// value at weight 1 and theirs at 0, as it stays where it is: `keep` and `interpolate` give its own, `average` the
