@@ -250,7 +250,7 @@ fn edges_cut_differently_on_both_sides_close_along_the_chain() {
     // Two strips along y = 0, one with ends at every third, the other at every quarter, a little off the line.
     let strip = |n: u32, up: f64| {
         let at = |i: u32, y: f64| dvec3(f64::from(i) / f64::from(n), y, 0.0);
-        let off = |i: u32| if i % n == 0 { 0.0 } else { up * TOLERANCE * 0.4 };
+        let off = |i: u32| if i.is_multiple_of(n) { 0.0 } else { up * TOLERANCE * 0.4 };
         let quad = |i: u32| {
             let quad = vec![at(i, off(i)), at(i + 1, off(i + 1)), at(i + 1, up), at(i, up)];
             if up > 0.0 { quad } else { quad.into_iter().rev().collect() }
