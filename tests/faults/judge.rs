@@ -12,7 +12,8 @@ pub(crate) type Faults = Vec<String>;
 
 macro_rules! check {
     ($faults:expr, $is:expr, $($text:tt)+) => {
-        if !$is {
+        let holds = $is;
+        if !holds {
             $faults.push(format!($($text)+));
         }
     };
