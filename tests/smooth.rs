@@ -200,7 +200,7 @@ fn an_implicit_step_obeys_locks_and_boundaries() {
         let method = SmoothMethod::Implicit;
         smooth(
             &mut mesh,
-            SmoothOptions { method, lambda: 50.0, boundary, locked: &locked, ..Default::default() },
+            SmoothOptions { method, lambda: 50.0, boundary, locked_vertices: &locked, ..Default::default() },
         );
         let moved =
             |v| mesh.position(v) != pool.positions()[mesh.vertices().position(|w| w == v).expect("there")];
@@ -276,8 +276,12 @@ fn boundaries_stay_slide_or_move() {
     flat.map_positions(|p| dvec3(spread(p.x), spread(p.y), 0.0)).expect("finite");
     let mut sliding = shapes::mesh(&flat);
     let corners: Vec<_> = [0, 6, 42, 48].map(|v| sliding.vertices().nth(v).expect("there")).to_vec();
-    let options =
-        SmoothOptions { boundary: Boundary::Slide, iterations: 3, locked: &corners, ..Default::default() };
+    let options = SmoothOptions {
+        boundary: Boundary::Slide,
+        iterations: 3,
+        locked_vertices: &corners,
+        ..Default::default()
+    };
     smooth(&mut sliding, options);
     for (p, q) in positions(&sliding).iter().zip(flat.positions()) {
         for axis in 0..2 {
@@ -316,7 +320,7 @@ fn locked_and_isolated_vertices_keep_their_position_to_the_bit() {
         IndexedMesh::new(points, shapes::icosphere(1).polygons().clone()).expect("a valid vertex pool");
     let mut mesh = shapes::mesh(&pool);
     let locked: Vec<_> = [0, 5, 9].iter().map(|&v| mesh.vertices().nth(v).expect("there")).collect();
-    smooth(&mut mesh, SmoothOptions { locked: &locked, iterations: 50, ..Default::default() });
+    smooth(&mut mesh, SmoothOptions { locked_vertices: &locked, iterations: 50, ..Default::default() });
     let after = positions(&mesh);
     for v in [0, 5, 9, pool.vertex_count() - 1] {
         assert_eq!(after[v], pool.positions()[v]);
@@ -339,7 +343,7 @@ fn factors_out_of_range_and_dead_keys_are_refused_and_change_nothing() {
     }
     let other = shapes::mesh(&shapes::torus(5, 5));
     let stranger = other.vertices().last().expect("there");
-    let refused = mesh.smooth(SmoothOptions { locked: &[stranger], ..Default::default() });
+    let refused = mesh.smooth(SmoothOptions { locked_vertices: &[stranger], ..Default::default() });
     assert_eq!(refused, Err(SmoothError::Missing(stranger)));
     let method = SmoothMethod::Taubin { mu: -1e300 };
     let refused = mesh.smooth(SmoothOptions { method, iterations: 9, ..Default::default() });

@@ -164,7 +164,7 @@ const ROWS: [Row; 73] = [
         }))
     }),
     ("smooth", "a dead vertex locked", "Missing", |m| {
-        smooth(m, SmoothOptions { locked: &[VertexKey::default()], ..Default::default() })
+        smooth(m, SmoothOptions { locked_vertices: &[VertexKey::default()], ..Default::default() })
     }),
     ("smooth", "beyond the range of numbers", "OutOfRange", |m| {
         let method = SmoothMethod::Taubin { mu: -1e300 };

@@ -54,7 +54,7 @@ pub(super) fn smooth(session: &mut Session, args: &Smooth) -> Result<Answer, Fai
         let smoothed = progress::shown(|hook| {
             let iterations = args.iterations;
             let control = Control::new(hook);
-            mesh.smooth(SmoothOptions { method, lambda, iterations, boundary, locked: &[], control })
+            mesh.smooth(SmoothOptions { method, lambda, iterations, boundary, control, ..Default::default() })
         });
         smoothed.map(|()| None).map_err(Failure::refused)
     })

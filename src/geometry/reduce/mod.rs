@@ -16,7 +16,7 @@ mod run;
 mod told;
 mod write;
 
-use crate::{Cancelled, Control, EdgeKey, FaceKey, Mesh, VertexKey};
+use crate::{BadOption, Cancelled, Control, EdgeKey, FaceKey, Mesh, VertexKey};
 use attempt::Guards;
 use copy::Copy;
 use glam::DVec3;
@@ -104,13 +104,8 @@ pub enum ReduceError {
     #[error("an error bound of {0} makes no sense")]
     BadErrorBound(f64),
     /// Another option is out of range.
-    #[error("{option} cannot be {value}")]
-    BadOption {
-        /// The name of the option.
-        option: &'static str,
-        /// What it was.
-        value: f64,
-    },
+    #[error(transparent)]
+    BadOption(#[from] BadOption),
     /// A locked vertex is not there.
     #[error("{0:?} is not a vertex of the mesh")]
     MissingVertex(VertexKey),
@@ -225,7 +220,7 @@ struct Goal {
 impl ReduceOptions<'_> {
     fn goal(&self, faces: usize) -> Result<Goal, ReduceError> {
         let in_range = |option, value: f64, is_fine: bool| {
-            if is_fine { Ok(()) } else { Err(ReduceError::BadOption { option, value }) }
+            if is_fine { Ok(()) } else { Err(BadOption { option, value }) }
         };
         let (weight, turn, shape) = (self.line_weight, self.max_turn_degrees, self.min_shape);
         in_range("line_weight", weight, (0.0..=1e6).contains(&weight))?;

@@ -62,7 +62,7 @@ pub struct SmoothOptions<'a> {
     /// What boundary vertices do.
     pub boundary: Boundary,
     /// Vertices that stay.
-    pub locked: &'a [VertexKey],
+    pub locked_vertices: &'a [VertexKey],
     /// The progress-and-cancel hook.
     pub control: Control<'a>,
 }
@@ -74,7 +74,7 @@ impl Default for SmoothOptions<'_> {
             lambda: 0.5,
             iterations: 1,
             boundary: Boundary::Fixed,
-            locked: &[],
+            locked_vertices: &[],
             control: Control::none(),
         }
     }
@@ -124,7 +124,7 @@ impl Mesh {
     /// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     /// let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &faces)?)?;
     /// let (v, w) = (mesh.vertices().next().unwrap(), mesh.vertices().last().unwrap());
-    /// mesh.smooth(SmoothOptions { lambda: 0.5, locked: &[w], ..Default::default() })?;
+    /// mesh.smooth(SmoothOptions { lambda: 0.5, locked_vertices: &[w], ..Default::default() })?;
     /// assert!(mesh.position(v).distance(DVec3::splat(1.0 / 6.0)) < 1e-15);
     /// assert_eq!(mesh.position(w), DVec3::Z);
     /// let taubin = SmoothMethod::Taubin { mu: -0.4 };
@@ -133,7 +133,7 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn smooth(&mut self, options: SmoothOptions<'_>) -> Result<(), SmoothError> {
-        let SmoothOptions { method, lambda, iterations, boundary, locked, mut control } = options;
+        let SmoothOptions { method, lambda, iterations, boundary, locked_vertices, mut control } = options;
         let is_implicit = matches!(method, SmoothMethod::Implicit);
         let longest = if is_implicit { implicit::LONGEST } else { 1.0 };
         if !(lambda > 0.0 && lambda <= longest) {
@@ -147,7 +147,7 @@ impl Mesh {
         if self.vertex_count() == 0 {
             return Err(SmoothError::Empty);
         }
-        let rules = Rules::new(self, boundary, locked)?;
+        let rules = Rules::new(self, boundary, locked_vertices)?;
         // Brought to about one, so that neither sums nor cross products overflow.
         let scale = unit_scale(self.vertices.live().map(|v| self.positions[v as usize]));
         let mut now: Vec<DVec3> = self.positions.iter().map(|&p| p * scale).collect();
