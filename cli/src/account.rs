@@ -111,7 +111,7 @@ fn verdict(account: &Account) -> String {
 }
 
 fn faces(account: &Account) -> String {
-    let f = &account.faces;
+    let f = &account.face_tally;
     let mut parts = vec![format!("{} kept", f.kept)];
     let more = [(f.changed, "changed"), (f.dropped, "dropped"), (f.added, "new")];
     parts.extend(more.iter().filter(|m| m.0 > 0).map(|(count, what)| format!("{count} {what}")));

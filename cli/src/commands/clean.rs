@@ -24,8 +24,9 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         })
     })?;
     let Outcome { value, report, maps } = outcome;
+    let not_carried = text::not_carried(&report);
     let account =
-        session.timed(Phase::Run, || Account::new(&loaded.soup, (profile, weld), &value, &report, &maps))?;
+        session.timed(Phase::Run, || Account::new(&loaded.soup, (profile, weld), &value, report, &maps))?;
     let soup: PolygonSoup = session.timed(Phase::Run, || value.into());
     // All files are complete before the first is put in its place.
     let (staged, lost) = output::stage_mesh(session, &args.output, &soup)?;
@@ -41,14 +42,13 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         .with("lost", &lost)
         .with("remerged_vertices", &remerged);
     if let Some(path) = &args.report {
-        let object = session.object(json.clone());
-        staged.push(session.timed(Phase::Write, || output::stage_text(path, &object))?);
+        staged.push(output::stage_with(path, |sink| session.write_object(&json, sink))?);
     }
     for file in staged {
         file.commit()?;
     }
     let mut text = told(&account);
-    for line in text::not_carried(&report) {
+    for line in not_carried {
         text.push_str(&format!("{line}\n"));
     }
     text.push_str(&format!("\nwrote {}\n", args.output.output.display()));
