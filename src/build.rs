@@ -180,44 +180,67 @@ pub(crate) fn assemble(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
 /// The same for faces that are known to have neither pinches nor repeats.
 pub(crate) fn lay_out(pool: &IndexedMesh, pairing: &Pairing) -> Option<Mesh> {
     let polygons = pool.polygons();
-    let halfedges = 2 * (pairing.edges + 1);
-    let mut mesh = Mesh {
-        vertices: Arena::filled(pool.vertex_count()),
-        edges: Arena::filled(pairing.edges),
-        faces: Arena::filled(pool.face_count()),
-        // Every entry that means anything is written below.
-        next: vec![0; halfedges],
-        prev: vec![0; halfedges],
-        origin: vec![0; halfedges],
-        face: vec![NONE; halfedges],
-        vertex_halfedge: vec![NONE; pool.vertex_count() + 1],
-        face_halfedge: Vec::with_capacity(pool.face_count() + 1),
-        positions: shifted(pool.positions()),
-        ..Mesh::default()
-    };
-    // Slot 0 of every column is slotmap's sentinel, so input index i lives in slot i + 1.
-    mesh.face_halfedge.push(NONE);
+    let mut linking = Linking::new(pool.vertex_count(), pairing.edges, pool.face_count());
     let mut uses = pairing.use_of.as_slice();
-    for (f, corners) in polygons.iter().enumerate() {
+    for corners in polygons.iter() {
         let (own, rest) = uses.split_at(corners.len());
         uses = rest;
-        let mut before = own[own.len() - 1] + 2;
-        mesh.face_halfedge.push(own[0] + 2);
-        for (&v, &u) in corners.iter().zip(own) {
+        linking.face(corners, own);
+    }
+    let mut mesh = linking.finish(shifted(pool.positions()), &pairing.open)?;
+    mesh.adopt(pool.attributes(), |corner| pairing.use_of[corner] + 2);
+    Some(mesh)
+}
+
+/// A mesh that is being laid out, face by face. Slot 0 of every column is slotmap's sentinel, so index `i` lives in slot
+/// `i + 1`, and the first use of edge `e` in half-edge `2 * e + 2`.
+pub(crate) struct Linking {
+    mesh: Mesh,
+}
+
+impl Linking {
+    pub(crate) fn new(vertices: usize, edges: usize, faces: usize) -> Self {
+        let halfedges = 2 * (edges + 1);
+        let mut mesh = Mesh {
+            vertices: Arena::filled(vertices),
+            edges: Arena::filled(edges),
+            faces: Arena::filled(faces),
+            // Every entry that means anything is written later.
+            next: vec![0; halfedges],
+            prev: vec![0; halfedges],
+            origin: vec![0; halfedges],
+            face: vec![NONE; halfedges],
+            vertex_halfedge: vec![NONE; vertices + 1],
+            face_halfedge: Vec::with_capacity(faces + 1),
+            ..Mesh::default()
+        };
+        mesh.face_halfedge.push(NONE);
+        Self { mesh }
+    }
+
+    /// The next face: its vertices, and for each corner twice its edge, plus one unless it is the edge's first use.
+    #[inline(always)]
+    pub(crate) fn face(&mut self, corners: &[u32], uses: &[u32]) {
+        let mesh = &mut self.mesh;
+        let f = mesh.face_halfedge.len() as u32;
+        let mut before = uses[uses.len() - 1] + 2;
+        mesh.face_halfedge.push(uses[0] + 2);
+        for (&v, &u) in corners.iter().zip(uses) {
             let h = u + 2;
             mesh.next[before as usize] = h;
             mesh.prev[h as usize] = before;
             mesh.origin[h as usize] = v + 1;
-            mesh.face[h as usize] = f as u32 + 1;
+            mesh.face[h as usize] = f;
             mesh.vertex_halfedge[v as usize + 1] = h;
             before = h;
         }
     }
-    if !link_boundary(&mut mesh, &pairing.open) {
-        return None;
+
+    /// The mesh, given positions by slot and the edges with one use; `None` if a vertex is pinched at the boundary.
+    pub(crate) fn finish(mut self, positions: Vec<DVec3>, open: &[u32]) -> Option<Mesh> {
+        self.mesh.positions = positions;
+        link_boundary(&mut self.mesh, open).then_some(self.mesh)
     }
-    mesh.adopt(pool.attributes(), |corner| pairing.use_of[corner] + 2);
-    Some(mesh)
 }
 
 fn shifted(values: &[DVec3]) -> Vec<DVec3> {

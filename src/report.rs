@@ -526,10 +526,23 @@ impl Relation {
     pub(crate) fn from_old_of(old_count: usize, starts: Vec<u32>, items: Vec<u32>) -> Self {
         let count = starts.len().saturating_sub(1);
         let single = items.len() == count && starts.iter().zip(0u32..).all(|(&s, i)| s == i);
-        let backward = Lists { starts: if single { Vec::new() } else { starts }, items };
-        let pairs = backward.pairs().map(|(new, old)| (old, new));
-        let forward = Lists::group(old_count, pairs);
-        Self { forward, backward }
+        let mut forward = vec![0u32; old_count + 1];
+        items.iter().for_each(|&old| forward[old as usize + 1] += 1);
+        let is_single = forward[1..].iter().all(|&n| n == 1);
+        (0..old_count).for_each(|i| forward[i + 1] += forward[i]);
+        let mut list = vec![0u32; items.len()];
+        let mut at = forward.clone();
+        for (range, new) in starts.windows(2).zip(0..) {
+            for &old in &items[range[0] as usize..range[1] as usize] {
+                let slot = &mut at[old as usize];
+                list[*slot as usize] = new;
+                *slot += 1;
+            }
+        }
+        Self {
+            forward: Lists { starts: if is_single { Vec::new() } else { forward }, items: list },
+            backward: Lists { starts: if single { Vec::new() } else { starts }, items },
+        }
     }
 
     /// The number of old elements.

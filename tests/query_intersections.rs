@@ -1,5 +1,6 @@
 //! Self-intersections: named cases, and beside them all pairs of triangles in rational arithmetic.
 
+mod corpus;
 mod exact;
 mod shapes;
 
@@ -237,6 +238,54 @@ fn any_two_triangles_of_a_small_grid_meet_as_rational_arithmetic_says() {
             mesh.to_indexed()
         );
     }
+}
+
+#[test]
+fn hundreds_of_faces_meet_as_rational_arithmetic_says() {
+    let mut noise = Noise(35);
+    for degree in [3, 4] {
+        let (mut points, mut faces) = (Vec::new(), Vec::new());
+        for _ in 0..250 {
+            let mut at = |n: u32| f64::from(noise.below(n));
+            let corner = dvec3(at(16), at(16), at(16));
+            let first = points.len() as u32;
+            points.extend((0..degree).map(|_| corner + dvec3(at(6), at(6), at(6))));
+            faces.push((first..first + degree).collect());
+        }
+        let [cross, overlap, touch] = check(&cleaned(points, faces));
+        assert!(cross > 50 && overlap + touch > 10, "{cross} {overlap} {touch}");
+    }
+}
+
+#[test]
+fn real_parts_answer_and_their_pairs_lie_close_together() {
+    // Goes on without the corpus.
+    let Some(rows) = corpus::rows() else { return };
+    let (mut asked, mut total) = (0, 0);
+    for row in rows.iter().filter(|r| r.is_readable()) {
+        let Ok(soup) = row.load() else { continue };
+        let mesh = clean(&soup, CleanOptions::default()).expect("always answers").value;
+        if mesh.face_count() > 20_000 {
+            continue;
+        }
+        let options = SelfIntersectionOptions { max_listed: 200, ..Default::default() };
+        let found = mesh.self_intersections(options).expect("nobody cancels");
+        let bounds = |f| {
+            let corners = mesh.face_vertices(f).map(|v| mesh.position(v));
+            corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)))
+        };
+        for pair in &found.pairs {
+            for f in pair.faces {
+                let (low, high) = bounds(f);
+                let slack = 1e-9 * (high.abs().max(low.abs()).max_element());
+                let is_within = pair.place.cmpge(low - slack).all() && pair.place.cmple(high + slack).all();
+                assert!(is_within, "{}: {pair:?}", row.path);
+            }
+        }
+        asked += 1;
+        total += found.count();
+    }
+    assert!(asked > 20 && total > 0, "{asked} {total}");
 }
 
 /// A solid, and the same moved by less than its size: not at whole numbers, so in general position.

@@ -250,7 +250,7 @@ fn edges_cut_differently_on_both_sides_close_along_the_chain() {
     // Two strips along y = 0, one with ends at every third, the other at every quarter, a little off the line.
     let strip = |n: u32, up: f64| {
         let at = |i: u32, y: f64| dvec3(f64::from(i) / f64::from(n), y, 0.0);
-        let off = |i: u32| if i % n == 0 { 0.0 } else { up * TOLERANCE * 0.4 };
+        let off = |i: u32| if i.is_multiple_of(n) { 0.0 } else { up * TOLERANCE * 0.4 };
         let quad = |i: u32| {
             let quad = vec![at(i, off(i)), at(i + 1, off(i + 1)), at(i + 1, up), at(i, up)];
             if up > 0.0 { quad } else { quad.into_iter().rev().collect() }
@@ -313,6 +313,27 @@ fn soups_with_jitter_as_large_as_their_short_edges_close_for_the_most_part() {
         jittered.polygons.corners().len()
     );
     assert_eq!(outcome.value.face_count(), truth.face_count(), "no face folds");
+}
+
+#[test]
+fn files_made_to_be_quadratic_are_not() {
+    // Triangles that all have an edge along one line, with ends in random places within it; or all at one place.
+    let n = 20_000u32;
+    for (length, spread) in [(1e-3, 1.0), (0.9, 0.1), (1e-5, 1e-9)] {
+        let mut noise = Noise(3);
+        let triangle = |_| {
+            let (x, y) = (noise.unit() * spread, noise.unit());
+            [dvec3(x, 0.0, 0.0), dvec3(x + length * (0.5 + y), 0.0, 0.0), dvec3(x, 1.0, noise.unit())]
+        };
+        let points: Vec<DVec3> = (0..n).flat_map(triangle).collect();
+        let soup = PolygonSoup::new(points, (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect());
+        for tolerance in [1e-8, 1e-4, 1e-2] {
+            let start = cpu_time::ProcessTime::now();
+            stitch(&soup, Weld::Exact, tolerance).expect("never refused");
+            // A quadratic walk takes minutes.
+            assert!(start.elapsed().as_secs() < 60, "{length} {spread} {tolerance}: {:?}", start.elapsed());
+        }
+    }
 }
 
 /// A closed mesh some edges of which have further vertices in one of their two faces only, moved by up to `jitter`.

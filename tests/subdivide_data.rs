@@ -326,13 +326,19 @@ fn with_rules(mesh: &mut Mesh, custom: Rule<f64>) -> Rules {
     let on_edges = some().map(|rule| mesh.add_edge_column(-1.0, rule));
     let on_faces = some().map(|rule| mesh.add_face_column(-1.0, rule));
     for v in mesh.vertices().collect::<Vec<_>>() {
-        on_vertices.iter().for_each(|&c| drop(mesh.set_value(c, v, mesh.position(v).x).expect("live")));
+        for &c in &on_vertices {
+            mesh.set_value(c, v, mesh.position(v).x).expect("live");
+        }
     }
     for e in mesh.edges().collect::<Vec<_>>() {
-        on_edges.iter().for_each(|&c| drop(mesh.set_value(c, e, 1.0).expect("live")));
+        for &c in &on_edges {
+            mesh.set_value(c, e, 1.0).expect("live");
+        }
     }
     for f in mesh.faces().collect::<Vec<_>>() {
-        on_faces.iter().for_each(|&c| drop(mesh.set_value(c, f, 1.0).expect("live")));
+        for &c in &on_faces {
+            mesh.set_value(c, f, 1.0).expect("live");
+        }
     }
     Rules { on_vertices, on_edges, on_faces }
 }
@@ -388,7 +394,7 @@ fn a_custom_rule_is_told_of_vertices_that_move() {
     });
     let mut mesh = shapes::mesh(&shapes::tetrahedron());
     mesh.add_vertex_column(0.0, rule);
-    let mut count = |scheme, event: Event| {
+    let count = |scheme, event: Event| {
         fine(&mesh, scheme, 1);
         let all = std::mem::take(&mut *seen.lock().expect("one thread"));
         all.iter().filter(|e| e.0 == event).count()

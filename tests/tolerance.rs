@@ -80,7 +80,7 @@ fn clean_files_are_welded_exactly() {
 #[test]
 fn a_boundary_that_is_meant_is_welded_exactly() {
     let star: Vec<Vec<u32>> = (0..12).map(|i| vec![0, 1 + i, 1 + (i + 1) % 12]).collect();
-    let radius = |i: u32| if i % 2 == 0 { 1.0 } else { 0.4 };
+    let radius = |i: u32| if i.is_multiple_of(2) { 1.0 } else { 0.4 };
     let spike = |i: u32| {
         let angle = f64::from(i) * std::f64::consts::TAU / 12.0;
         dvec3(angle.cos(), angle.sin(), 0.0) * radius(i)

@@ -96,7 +96,10 @@ fn commands_answer(dir: &Path, file: &str) -> usize {
             let (code, after) = json(dir, &["inspect", "out.ply", "--weld", "none"]);
             assert_eq!(code, 0, "{filled:?}");
             for counted in ["vertices", "faces"] {
-                assert!(object.get(counted).is_none_or(|n| *n == after[counted]), "{filled:?}: {counted}");
+                assert!(
+                    object.get(counted).is_none_or(|n| !n.is_number() || *n == after[counted]),
+                    "{filled:?}: {counted}"
+                );
             }
         }
     }

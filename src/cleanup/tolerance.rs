@@ -39,7 +39,7 @@ pub struct ProposedTolerance {
 /// one, but for one in a hundred. A file without naked edges gets 0, and so does one whose boundary is meant.
 ///
 /// What it asks of distances: no more than a quarter of the length of the edges they join, on the average; and, unless
-/// half of all edges are such, a thousandth of the box's diagonal.
+/// two in five of all edges are such, a thousandth of the box's diagonal.
 ///
 /// O(n log n) in the corners; a few welds.
 ///
@@ -190,11 +190,16 @@ impl Gap {
 
 /// No more naked edges are asked, spread evenly over all.
 const ASKED: usize = 1 << 15;
+/// Of more naked edges than this, only those in a few slabs across the longest side of the box are looked at.
+const ALL: usize = 1 << 18;
+const SLABS: usize = 8;
 /// No more of what lies around a naked edge is looked at.
 const LOOKS: usize = 256;
 
-/// Naked edges, scaled by a power of two so that coordinates are about one at most.
+/// Naked edges, or those in some slabs, scaled by a power of two so that coordinates are about one at most.
 struct Edges {
+    /// How many there are in all.
+    naked: usize,
     /// Ends, in the direction of the face.
     ends: Vec<[DVec3; 2]>,
     faces: Vec<u32>,
@@ -207,10 +212,17 @@ impl Edges {
         let scale = unit_scale(positions.iter().copied());
         let face_of = FaceOf::new(polygons);
         let at = |c: usize| positions[polygons.corners()[c] as usize] * scale;
-        let end = |c: usize| next_corner(polygons, face_of.face(c), c);
-        let ends: Vec<[DVec3; 2]> = naked.iter().map(|&c| [at(c), at(end(c))]).collect();
-        let tree = Tree::new(ends.iter().map(|[a, b]| *a * 0.5 + *b * 0.5).zip(0..));
-        Self { tree, faces: naked.iter().map(|&c| face_of.face(c)).collect(), ends, scale }
+        let end = |c: usize| at(next_corner(polygons, face_of.face(c), c));
+        let middle = |c: usize| at(c) * 0.5 + end(c) * 0.5;
+        let chosen = if naked.len() > ALL { slabs(naked, middle) } else { Vec::new() };
+        let chosen = if chosen.is_empty() { naked } else { &chosen };
+        Self {
+            naked: naked.len(),
+            ends: chosen.iter().map(|&c| [at(c), end(c)]).collect(),
+            faces: chosen.iter().map(|&c| face_of.face(c)).collect(),
+            tree: Tree::new(chosen.iter().map(|&c| middle(c)).zip(0..)),
+            scale,
+        }
     }
 
     /// How far an edge's ends must move at least to make it one with a naked edge of another face, below its own length.
@@ -253,7 +265,7 @@ impl Edges {
             let mut parts: Vec<f64> = found[from..=i].iter().map(|f| f.1).collect();
             parts.sort_unstable_by(f64::total_cmp);
             let part = parts[parts.len() / 2];
-            let is_soup = (i + 1) * self.ends.len() / asked >= edge_count / 2;
+            let is_soup = (i + 1) as f64 / asked as f64 * self.naked as f64 >= 0.4 * edge_count as f64;
             let last = last / self.scale;
             if part <= 0.5 && (is_soup || part <= 0.1 && last <= diagonal * 1e-3) {
                 gaps.push(Gap { last, next: next / self.scale, count: i + 1 });
@@ -264,6 +276,22 @@ impl Edges {
         }
         gaps
     }
+}
+
+/// Those corners of which the middles lie in slabs with about [`ALL`] of them.
+fn slabs(naked: &[usize], middle: impl Fn(usize) -> DVec3) -> Vec<usize> {
+    let Some(bounds) = Aabb::around(naked.iter().map(|&c| middle(c))) else { return Vec::new() };
+    let axis = (bounds.max - bounds.min).max_position();
+    let mut sorted: Vec<f64> = naked.iter().map(|&c| middle(c)[axis]).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let (every, thick) = (sorted.len() / SLABS, ALL / SLABS);
+    let slab = |i: usize| {
+        let first = i * every + (every - thick) / 2;
+        [sorted[first], sorted[first + thick]]
+    };
+    let slabs: [[f64; 2]; SLABS] = std::array::from_fn(slab);
+    let is_in = |x: f64| slabs.iter().any(|[low, high]| (*low..=*high).contains(&x));
+    naked.iter().copied().filter(|&c| is_in(middle(c)[axis])).collect()
 }
 
 #[cfg(test)]

@@ -100,11 +100,12 @@ pub(super) fn is_near(p: DVec3, q: DVec3, tolerance: f64) -> bool {
 }
 
 /// The tutorial's greedy rule (each vertex joins the lowest kept vertex nearer than the tolerance, and is kept if there
-/// is none) in linear time: kept vertices are at least a tolerance apart, so a grid cell twice that wide holds few, and
-/// all that are near a point lie in the cells of its corners `x - t`, `x` and `x + t`: eight at most, but for rounding.
+/// is none) in linear time: kept vertices are at least a tolerance apart, so a grid cell four times that wide holds few,
+/// and all that are near a point lie in the cells of its corners `x - t`, `x` and `x + t`: eight at most, but for
+/// rounding, and fewer than four on the average.
 fn within(positions: &[DVec3], tolerance: f64, control: &mut Control<'_>) -> Result<Vec<u32>, Cancelled> {
     let cell = |x: f64| {
-        let cell = (x / tolerance * 0.5).floor();
+        let cell = (x / tolerance * 0.25).floor();
         // So far out that the tolerance is less than a bit of the coordinate: equal coordinates only.
         if cell.is_finite() { cell.to_bits() } else { x.to_bits() }
     };

@@ -248,7 +248,7 @@ pub fn write(
     }
 }
 
-/// As [`write`], with a progress-and-cancel hook. What was written before it was cancelled stays in the sink.
+/// As [`write`](fn@write), with a progress-and-cancel hook. What was written before it was cancelled stays in the sink.
 ///
 /// # Errors
 /// [`WriteError`]; when cancelled.

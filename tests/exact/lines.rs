@@ -119,14 +119,11 @@ pub(crate) fn hits(all: &[Triangle], origin: Point, direction: Point) -> Vec<Eve
         let mut kinds = [false; 3];
         for &(i, _) in own.iter().filter(|m| all[m.0].contains(x)) {
             let t = &all[i];
-            let kind = if t.at.contains(&x) {
-                0
-            } else if (0..3).any(|k| t.is_side[k] && is_on(x, t.edge(k))) {
-                1
-            } else {
-                2
-            };
-            kinds[kind] = true;
+            // Both, where a vertex lies on an edge.
+            let is_vertex = t.at.contains(&x);
+            let on_side = |k: usize| t.is_side[k] && !t.edge(k).contains(&x) && is_on(x, t.edge(k));
+            let is_edge = (0..3).any(on_side);
+            kinds = [kinds[0] | is_vertex, kinds[1] | is_edge, kinds[2] | !(is_vertex || is_edge)];
         }
         let event = Event { t, crossing: sum.signum(), kinds };
         events.extend(std::iter::repeat_n(event, sum.unsigned_abs().max(1) as usize));

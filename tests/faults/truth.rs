@@ -1,6 +1,6 @@
 //! Shapes of known truth: closed, manifold, wound outward, cavities inward.
 
-use crate::shapes::{both, cube, fanned, icosphere, pool, torus};
+use crate::shapes::{both, fanned, icosphere, pool, torus};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{IndexedMesh, Mesh};
 

@@ -14,7 +14,7 @@ pub(super) struct Classes<'s, 'p> {
     size: Vec<u32>,
     kept: Vec<u32>,
     /// How much may still be looked at: a file made to be slow is stitched in part.
-    pub(super) budget: u64,
+    budget: u64,
     around: [Around; 2],
 }
 
@@ -35,7 +35,7 @@ impl<'s, 'p> Classes<'s, 'p> {
             next: own.clone(),
             size: vec![1; own.len()],
             kept: own,
-            budget: 512 * seams.edges.len() as u64 + (1 << 20),
+            budget: 32 * seams.edges.len() as u64 + (1 << 22),
             around: Default::default(),
         }
     }
@@ -76,7 +76,7 @@ impl<'s, 'p> Classes<'s, 'p> {
     }
 
     /// Spends on looking at something; whether there was enough.
-    pub(super) fn spend(&mut self, on: usize) -> bool {
+    fn spend(&mut self, on: usize) -> bool {
         let left = self.budget.checked_sub(on as u64);
         self.budget = left.unwrap_or(0);
         left.is_some()
@@ -140,7 +140,7 @@ impl<'s, 'p> Classes<'s, 'p> {
         }
         around.faces.sort_unstable();
         around.neighbors.sort_unstable();
-        self.spend(3 * around.faces.len())
+        self.spend(around.faces.len())
     }
 
     /// Whether a class has an edge to a vertex.

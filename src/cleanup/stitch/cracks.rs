@@ -57,10 +57,10 @@ fn candidates(classes: &Classes<'_, '_>) -> Vec<Candidate> {
             if looks < LOOKS { seams.reach } else { -1.0 }
         });
         own.sort_unstable_by(Candidate::order);
-        all.extend(own.iter().take(PARTNERS));
+        // Its partner thinks of it too.
+        all.extend(own.iter().take(PARTNERS).filter(|c| c.edges[0] == e));
     }
     all.sort_unstable_by(Candidate::order);
-    all.dedup_by_key(|c| c.edges);
     all
 }
 
@@ -77,4 +77,50 @@ fn cost(classes: &Classes<'_, '_>, e: u32, f: u32) -> (f64, bool) {
     let opposite = a.distance(d).max(b.distance(c));
     let same = 2.0 * a.distance(c).max(b.distance(d));
     (opposite.min(same), opposite <= same)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Polygons;
+    use crate::cleanup::stitch::seams::Seams;
+    use crate::matching::Matching;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn candidates_are_all_pairs_of_edges_within_reach(points in prop::collection::vec([0i32..4, 0..4, 0..4], 9..36), off in prop::collection::vec([-0.1f64..0.1, -0.1..0.1, -0.1..0.1], 36)) {
+            let place = |(p, o): (&[i32; 3], &[f64; 3])| DVec3::from(p.map(f64::from)) + DVec3::from(*o);
+            let positions: Vec<DVec3> = points.iter().zip(&off).map(place).collect();
+            let faces: Polygons = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            let seams = Seams::new(&positions, &faces, &Matching::new(positions.len(), &faces), 0.3);
+            let classes = Classes::new(&seams);
+            let mut naive: Vec<[u32; 2]> = Vec::new();
+            for e in 0..seams.edges.len() as u32 {
+                for f in e + 1..seams.edges.len() as u32 {
+                    let [p, q] = [e, f].map(|e| seams.edges[e as usize]);
+                    let far = |a: [u32; 2], b: [u32; 2]| {
+                        let apart = |i: usize| seams.at(a[i]).distance(seams.at(b[i]));
+                        apart(0).max(apart(1))
+                    };
+                    let (same, opposite) = (far(p.ends, q.ends), far(p.ends, [q.ends[1], q.ends[0]]));
+                    let farthest = if opposite <= 2.0 * same { opposite } else { same };
+                    if p.face != q.face && farthest <= seams.reach {
+                        naive.push([e, f]);
+                    }
+                }
+            }
+            let found = candidates(&classes);
+            prop_assert!(found.is_sorted_by(|a, b| a.cost <= b.cost));
+            let mut found: Vec<[u32; 2]> = found.iter().map(|c| c.edges).collect();
+            found.sort_unstable();
+            let partners = |e: u32| naive.iter().filter(|n| n.contains(&e)).count();
+            if (0..seams.edges.len() as u32).all(|e| partners(e) <= PARTNERS) {
+                prop_assert_eq!(found, naive);
+            } else {
+                prop_assert!(found.iter().all(|pair| naive.contains(pair)));
+            }
+        }
+    }
 }

@@ -12,8 +12,10 @@ use glam::DVec3;
 /// No more of what lies around an end is looked at, and no more ends are thought of as one with it.
 const LOOKS: usize = 32;
 const PARTNERS: usize = 6;
+/// No end is put into more edges.
+const EDGES: u32 = 4;
 /// What is tentative settles in two or three rounds on any file from life.
-const ROUNDS: usize = 16;
+const ROUNDS: usize = 8;
 
 /// An end to be put into a naked edge.
 #[derive(Clone, Copy, Debug)]
@@ -205,6 +207,10 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
     // For each vertex of the pool the last face that had its class as a corner.
     let mut in_face = vec![NONE; seams.polygons.corners().iter().max().map_or(0, |&v| v as usize + 1)];
     let mut last_face = NONE;
+    // A file made to be slow is stitched in part.
+    let mut looks = 32 * loose.len() + (1 << 22);
+    // For each class how many edges it is put into.
+    let mut edges_cut = vec![0; seams.vertex.len()];
     let mut hits: Vec<(f64, u32)> = Vec::new();
     for &e in loose {
         let edge = seams.edges[e as usize];
@@ -216,18 +222,18 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
         }
         let [a, b] = edge.ends.map(|end| seams.at(end));
         hits.clear();
-        let mut looks = 0;
         tree.tube([a, b], seams.reach, |class| {
-            looks += 1;
+            looks -= 1;
             let p = classes.place(class);
             let (square, at) = segment_foot(a - p, b - p);
             let is_inside = p.distance(a) > seams.reach && p.distance(b) > seams.reach;
-            if square.sqrt() <= seams.reach && at > 0.0 && at < 1.0 && is_inside {
+            let is_near = square.sqrt() <= seams.reach && at > 0.0 && at < 1.0;
+            if is_near && is_inside && edges_cut[class as usize] < EDGES {
                 hits.push((at, class));
             }
-            looks < classes.budget
+            looks > 0
         });
-        if !classes.spend(looks as usize) {
+        if looks == 0 {
             break;
         }
         hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -242,6 +248,7 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
                 continue;
             }
             in_face[vertex] = edge.face;
+            edges_cut[class as usize] += 1;
             cuts.push(Cut { edge: e, at, end: classes.kept(class) });
         }
     }

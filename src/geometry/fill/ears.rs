@@ -241,7 +241,8 @@ mod tests {
         let side = |a: DVec3, b: DVec3| (0..300).map(move |i| a + (b - a) * f64::from(i) / 300.0);
         let [a, b, c, d] = [dvec3(0.1, 0., 0.), dvec3(1.1, 0.3, 0.), dvec3(1.2, 1.3, 0.), dvec3(0., 1., 0.)];
         let ring = ring_of(side(a, b).chain(side(b, c)).chain(side(c, d)).chain(side(d, a)).collect());
-        let flat = clip_all(&ring).into_iter().filter(|t| {
+        let triangles = clip_all(&ring);
+        let flat = triangles.iter().filter(|t| {
             let [a, b, c] = t.map(|i| ring.points[i as usize]);
             ring.triangle(a, b, c).is_flat
         });

@@ -84,7 +84,7 @@ impl Run {
         } else {
             self.reach(h)
         };
-        let is_far = moved > self.gauge.tolerance && !(at_last && !has_normal);
+        let is_far = moved > self.gauge.tolerance && (has_normal || !at_last);
         // A short edge that is gone does not come back, whatever becomes of the faces beside it: no step but splits, which
         // are counted, makes vertices.
         match (is_short || balance.goes_down(), is_far) {

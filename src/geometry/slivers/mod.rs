@@ -26,6 +26,13 @@ pub struct SliverOptions<'a> {
 
 impl SliverOptions<'_> {
     /// With a tolerance, and without a hook.
+    ///
+    /// # Examples
+    /// ```
+    /// use meshwright::{Mesh, SliverError, SliverOptions};
+    /// let refused = Mesh::default().resolve_slivers(SliverOptions::new(-1.0));
+    /// assert_eq!(refused, Err(SliverError::BadTolerance(-1.0)));
+    /// ```
     pub fn new(tolerance: f64) -> Self {
         Self { tolerance, control: Control::none() }
     }

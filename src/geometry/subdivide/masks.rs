@@ -4,9 +4,10 @@ use super::dense::Dense;
 use crate::matching::NONE;
 use glam::DVec3;
 
-/// Room for a level, with the old positions in front.
-fn room(dense: &Dense, centers: usize) -> Vec<DVec3> {
-    let mut positions = Vec::with_capacity(dense.positions.len() + dense.edges + centers);
+/// Room for a level, with `lead` entries that mean nothing and the old positions in front.
+fn room(dense: &Dense, centers: usize, lead: usize) -> Vec<DVec3> {
+    let mut positions = Vec::with_capacity(lead + dense.positions.len() + dense.edges + centers);
+    positions.resize(lead, DVec3::ZERO);
     positions.extend_from_slice(&dense.positions);
     positions
 }
@@ -30,9 +31,9 @@ fn for_each_edge(dense: &Dense, mut f: impl FnMut(usize, u32, u32)) {
 }
 
 /// Edges in the middle, large faces at their mean.
-pub(super) fn midpoint(dense: &Dense) -> Vec<DVec3> {
+pub(super) fn midpoint(dense: &Dense, lead: usize) -> Vec<DVec3> {
     let large = dense.polygons.iter().filter(|f| f.len() > 3);
-    let mut positions = room(dense, large.clone().count());
+    let mut positions = room(dense, large.clone().count(), lead);
     let old = positions.len();
     positions.resize(old + dense.edges, DVec3::ZERO);
     for_each_edge(dense, |e, a, b| {
@@ -104,8 +105,8 @@ fn is_sharp(dense: &Dense, e: usize, second: u32) -> bool {
 }
 
 /// Loop's scheme with Warren's weights; all faces are triangles.
-pub(super) fn loop_(dense: &Dense) -> Vec<DVec3> {
-    let mut positions = room(dense, 0);
+pub(super) fn loop_(dense: &Dense, lead: usize) -> Vec<DVec3> {
+    let mut positions = room(dense, 0, lead);
     let corners = dense.polygons.corners();
     let at = |c: usize| dense.positions[corners[c] as usize];
     let around = |c: u32| {
@@ -123,7 +124,7 @@ pub(super) fn loop_(dense: &Dense) -> Vec<DVec3> {
         });
     }
     let rings = rings(dense);
-    move_old(dense, &rings, &mut positions, |v, ring| {
+    move_old(dense, &rings, &mut positions[lead..], |v, ring| {
         let n = f64::from(ring.count);
         let beta = if ring.count == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) };
         dense.positions[v] * (1.0 - n * beta) + ring.sum * beta
@@ -132,15 +133,16 @@ pub(super) fn loop_(dense: &Dense) -> Vec<DVec3> {
 }
 
 /// Catmull and Clark's scheme.
-pub(super) fn catmull_clark(dense: &Dense) -> Vec<DVec3> {
-    let mut positions = room(dense, dense.polygons.len());
+pub(super) fn catmull_clark(dense: &Dense, lead: usize) -> Vec<DVec3> {
+    let mut positions = room(dense, dense.polygons.len(), lead);
     let old = positions.len();
     positions.resize(old + dense.edges, DVec3::ZERO);
     positions.extend(dense.polygons.iter().map(|f| mean(dense, f)));
     let (moved, centers) = positions.split_at_mut(old + dense.edges);
     let (moved, middles) = moved.split_at_mut(old);
+    let moved = &mut moved[lead..];
     // The centres on both sides of each edge, and around each vertex.
-    let mut around = vec![DVec3::ZERO; old];
+    let mut around = vec![DVec3::ZERO; moved.len()];
     let mut c = 0;
     for (face, &center) in dense.polygons.iter().zip(&*centers) {
         for &v in face {

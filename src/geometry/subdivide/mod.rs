@@ -218,30 +218,40 @@ impl Mesh {
             dense.mark_creases(self, options.creases, options.crease_degrees, options.corners)?;
             let (large, back) = shrink(&mut dense.positions);
             let changed = if levels > 0 { dense.polygons.len() } else { 0 };
-            let (mut dense, maps) = match scheme {
-                Scheme::Sqrt3 => {
-                    sqrt3::subdivide(dense, prepared.face_source, self, levels, &mut columns, &mut control)?
+            let (mut value, maps) = if scheme == Scheme::Sqrt3 {
+                let source = prepared.face_source;
+                let (dense, maps) =
+                    sqrt3::subdivide(dense, source, self, levels, &mut columns, &mut control)?;
+                control.report("build", 0.9)?;
+                (build(dense)?, maps)
+            } else {
+                let mut refined = Refined::new(dense, prepared.face_source, self);
+                let share =
+                    |level: u32| [level, level + 1].map(|l| 0.9 * 4f64.powi(l as i32 - levels as i32));
+                for level in 1..levels {
+                    let [from, to] = share(level - 1);
+                    let mut meter = Meter { control: &mut control, from, to };
+                    refined.step(scheme, &mut columns, &mut meter)?;
                 }
-                _ => {
-                    let mut refined = Refined::new(dense, prepared.face_source, self);
-                    for level in 0..levels {
-                        let [from, to] =
-                            [level, level + 1].map(|l| 0.9 * 4f64.powi(l as i32 - levels as i32));
-                        let mut meter = Meter { control: &mut control, from, to };
-                        refined.step(scheme, level + 1 == levels, &mut columns, &mut meter)?;
-                    }
-                    refined.finish()
+                if levels == 0 {
+                    let (dense, maps) = refined.unrefined();
+                    (build(dense)?, maps)
+                } else {
+                    let [from, to] = share(levels - 1);
+                    let mut meter = Meter { control: &mut control, from, to };
+                    refined.last(scheme, self, &mut columns, &mut meter)?
                 }
             };
             if large {
-                dense.positions.iter_mut().for_each(|p| *p *= back);
+                value.positions.iter_mut().for_each(|p| *p *= back);
             }
             control.report("build", 0.9)?;
-            (build(dense, &mut columns)?, maps, changed)
+            (value, maps, changed)
         };
         if let Some(step) = report.steps.last_mut() {
             step.changed = changed;
         }
+        place(&value, &mut columns);
         value.columns = columns;
         value.carried = self.carried.clone();
         Ok(Outcome { value, report, maps })
@@ -308,21 +318,26 @@ fn foresee(dense: &Dense, scheme: Scheme, levels: u32, limit: u64) -> Result<(),
 
 /// The mesh of the last level. Every scheme makes a manifold of a manifold, so what `Mesh::build` checks is not asked
 /// again: new edges end in a vertex of their own edge or face, so no two of them join the same vertices.
-///
-/// Columns go to where the elements are: in slots one past their numbers.
-fn build(dense: Dense, columns: &mut Columns) -> Result<Mesh, SubdivideError> {
+fn build(dense: Dense) -> Result<Mesh, SubdivideError> {
     let (positions, polygons, pairing) = dense.into_parts();
-    if !columns.is_empty() {
-        let (vertices, edges, faces) = (positions.len(), pairing.edges, polygons.len());
-        columns.place(Kind::Vertex, vertices + 1, 1..vertices as u32 + 1);
-        columns.place(Kind::Edge, edges + 1, 1..edges as u32 + 1);
-        columns.place(Kind::Face, faces + 1, 1..faces as u32 + 1);
-        columns.place(Kind::Corner, 2 * (edges + 1), pairing.use_of.iter().map(|&u| u + 2));
-    }
     let pool = IndexedMesh::trusted(positions, polygons, None);
     match lay_out(&pool, &pairing) {
         Some(mesh) => Ok(mesh),
         None => Mesh::build(&pool).map_err(SubdivideError::Bug),
+    }
+}
+
+/// Brings columns to where the elements of a fresh mesh are: in slots one past their numbers.
+fn place(mesh: &Mesh, columns: &mut Columns) {
+    for (kind, count) in [
+        (Kind::Vertex, mesh.vertex_count() as u32),
+        (Kind::Edge, mesh.edge_count() as u32),
+        (Kind::Face, mesh.face_count() as u32),
+    ] {
+        columns.place(kind, count as usize + 1, 1..count + 1);
+    }
+    if !columns.none_on(Kind::Corner) {
+        columns.place(Kind::Corner, mesh.next.len(), mesh.ordered_slots(Kind::Corner).into_iter());
     }
 }
 

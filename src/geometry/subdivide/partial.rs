@@ -44,7 +44,7 @@ pub(super) fn subdivide(
         (dense, selected) = (next, next_selected);
     }
     control.report("build", 0.9)?;
-    Ok((build(dense, columns)?, maps, changed))
+    Ok((build(dense)?, maps, changed))
 }
 
 /// One level.

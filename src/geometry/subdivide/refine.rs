@@ -3,16 +3,17 @@
 
 use super::dense::Dense;
 use super::{Meter, Scheme, SubdivideError, carry, masks};
+use crate::build::Linking;
 use crate::column::Columns;
 use crate::matching::NONE;
 use crate::report::{Maps, Relation};
-use crate::{Mesh, Polygons};
+use crate::{IndexedMesh, Mesh, Polygons};
+use glam::DVec3;
 use std::mem;
 
-/// The old element on which a new one lies: an old vertex, edge or face.
+/// The old element on which a new vertex or edge lies: an old edge or face.
 #[derive(Clone, Copy)]
 enum Birth {
-    Vertex(u32),
     Edge(u32),
     Face(u32),
 }
@@ -20,105 +21,120 @@ enum Birth {
 /// Levels so far.
 pub(super) struct Refined {
     dense: Dense,
-    /// By vertex.
+    /// By vertex, those of the first level left out.
     vertex_birth: Vec<Birth>,
-    /// By edge; a diagonal of the triangulation lies in a face.
+    /// By edge; a diagonal of the triangulation lies in a face. Empty while every edge is what it was.
     edge_birth: Vec<Birth>,
     /// By face: the old face it is part of.
     parent: Vec<u32>,
-    /// The ends of the old edges.
-    ends: Vec<[u32; 2]>,
-    /// The corners of the old faces, once they are no longer those of `dense`.
-    old: Option<Polygons>,
+    /// The first level with the faces of the mesh, once it is no longer `dense`.
+    first: Option<Dense>,
     old_faces: usize,
     old_vertices: usize,
+    /// Whether faces were cut into triangles before.
+    is_cut: bool,
 }
 
 impl Refined {
     pub(super) fn new(dense: Dense, face_source: Option<Vec<u32>>, mesh: &Mesh) -> Self {
         let (vertices, edges, faces) = (dense.positions.len(), dense.edges, dense.polygons.len());
-        let mut ends = vec![[NONE; 2]; edges];
-        let mut edge_birth: Vec<Birth> = (0..edges as u32).map(Birth::Edge).collect();
-        let mut c = 0;
-        // For each edge the old face of its first use.
-        let mut first_face = if face_source.is_some() { vec![NONE; edges] } else { Vec::new() };
-        for (f, face) in dense.polygons.iter().enumerate() {
-            for (i, &a) in face.iter().enumerate() {
-                let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
-                let e = dense.use_of[c] as usize >> 1;
-                ends[e] = [a.min(b), a.max(b)];
-                if let Some(source) = &face_source {
+        let mut edge_birth = Vec::new();
+        if let Some(source) = &face_source {
+            edge_birth.extend((0..edges as u32).map(Birth::Edge));
+            // For each edge the old face of its first use.
+            let mut first_face = vec![NONE; edges];
+            let mut c = 0;
+            for (face, &source) in dense.polygons.iter().zip(source) {
+                for _ in face {
+                    let e = dense.use_of[c] as usize >> 1;
                     // An edge between two parts of one face is a diagonal.
-                    if mem::replace(&mut first_face[e], source[f]) == source[f] {
-                        edge_birth[e] = Birth::Face(source[f]);
+                    if mem::replace(&mut first_face[e], source) == source {
+                        edge_birth[e] = Birth::Face(source);
                     }
+                    c += 1;
                 }
-                c += 1;
             }
         }
-        let old = face_source.is_some().then(|| mesh.to_indexed().into_parts().1);
         Self {
-            vertex_birth: (0..vertices as u32).map(Birth::Vertex).collect(),
+            vertex_birth: Vec::new(),
             edge_birth,
+            is_cut: face_source.is_some(),
             parent: face_source.unwrap_or_else(|| (0..faces as u32).collect()),
-            ends,
-            old,
+            first: None,
             old_faces: mesh.face_count(),
             old_vertices: vertices,
             dense,
         }
     }
 
-    /// One level; the births of edges are not needed after the last.
-    pub(super) fn step(
-        &mut self,
+    /// Positions of the next level, with `lead` entries in front; columns go along.
+    fn positions(
+        &self,
         scheme: Scheme,
-        is_last: bool,
+        lead: usize,
         columns: &mut Columns,
         meter: &mut Meter<'_, '_>,
-    ) -> Result<(), SubdivideError> {
-        let dense = &self.dense;
-        let has_center = |n: usize| scheme == Scheme::CatmullClark || n > 3;
+    ) -> Result<Vec<DVec3>, SubdivideError> {
         let positions = match scheme {
-            Scheme::Loop => masks::loop_(dense),
-            Scheme::CatmullClark => masks::catmull_clark(dense),
-            _ => masks::midpoint(dense),
+            Scheme::Loop => masks::loop_(&self.dense, lead),
+            Scheme::CatmullClark => masks::catmull_clark(&self.dense, lead),
+            _ => masks::midpoint(&self.dense, lead),
         };
         meter.advance(1, 4)?;
         if !columns.is_empty() {
-            carry::by_edges(columns, dense, &positions, &has_center);
+            carry::by_edges(columns, &self.dense, &positions[lead..], &|n| has_center(scheme, n));
             meter.advance(1, 3)?;
         }
-        let faces = dense.polygons.len();
-        let centers = positions.len() - dense.positions.len() - dense.edges;
-        let mut births = mem::take(&mut self.vertex_birth);
-        births.reserve_exact(positions.len() - births.len());
-        births.extend(&self.edge_birth);
+        Ok(positions)
+    }
 
-        let split = Split::new(dense, has_center, centers, meter)?;
-        let mut parent = Vec::with_capacity(split.polygons.len());
-        for (face, &old) in dense.polygons.iter().zip(&self.parent) {
-            let parts = if has_center(face.len()) {
-                births.push(Birth::Face(old));
-                face.len()
-            } else {
-                4
-            };
+    /// The births of the vertices that a level adds, and the parents of its faces.
+    fn births(&self, scheme: Scheme, births: &mut Vec<Birth>) -> Vec<u32> {
+        let dense = &self.dense;
+        births.reserve_exact(dense.edges);
+        if self.edge_birth.is_empty() {
+            births.extend((0..dense.edges as u32).map(Birth::Edge));
+        } else {
+            births.extend(&self.edge_birth);
+        }
+        let faces = || dense.polygons.iter().zip(&self.parent);
+        let centers = faces().filter(|(face, _)| has_center(scheme, face.len()));
+        births.extend(centers.map(|(_, &old)| Birth::Face(old)));
+        self.parents(scheme)
+    }
+
+    fn parents(&self, scheme: Scheme) -> Vec<u32> {
+        let most = self.dense.use_of.len() + self.dense.polygons.len();
+        let mut parent = Vec::with_capacity(most);
+        for (face, &old) in self.dense.polygons.iter().zip(&self.parent) {
+            let parts = if has_center(scheme, face.len()) { face.len() } else { 4 };
             parent.extend(std::iter::repeat_n(old, parts));
         }
-        if !is_last {
-            let mut inner = vec![Birth::Face(0); split.edges];
-            for (e, &base) in split.base.iter().enumerate() {
-                inner[base as usize] = self.edge_birth[e];
-                inner[base as usize + 1] = self.edge_birth[e];
-            }
-            for (f, &base) in split.inner.iter().enumerate() {
-                let count = dense.polygons[f].len();
-                inner[base as usize..base as usize + count].fill(Birth::Face(self.parent[f]));
-            }
-            self.edge_birth = inner;
+        parent
+    }
+
+    /// One level that is not the last.
+    pub(super) fn step(
+        &mut self,
+        scheme: Scheme,
+        columns: &mut Columns,
+        meter: &mut Meter<'_, '_>,
+    ) -> Result<(), SubdivideError> {
+        let positions = self.positions(scheme, 0, columns, meter)?;
+        let mut births = mem::take(&mut self.vertex_birth);
+        let parent = self.births(scheme, &mut births);
+        let dense = &self.dense;
+        let mut lists = Lists::new(dense, scheme);
+        let split = Split::new(dense, scheme, &mut lists, meter)?;
+        let mut inner = vec![Birth::Face(0); split.edges];
+        for (e, &base) in (0..).zip(&split.base) {
+            let birth = self.edge_birth.get(e as usize).copied().unwrap_or(Birth::Edge(e));
+            inner[base as usize] = birth;
+            inner[base as usize + 1] = birth;
         }
-        debug_assert_eq!(split.inner.len(), faces);
+        for ((face, &old), &base) in dense.polygons.iter().zip(&self.parent).zip(&split.inner) {
+            inner[base as usize..base as usize + face.len()].fill(Birth::Face(old));
+        }
         let mut creases = Vec::new();
         if !dense.creases.is_empty() {
             creases = vec![false; split.edges];
@@ -127,53 +143,163 @@ impl Refined {
                 creases[base as usize + 1] = crease;
             }
         }
-        let open = dense.open.iter().map(|&e| split.base[e as usize]).flat_map(|e| [e, e + 1]).collect();
+        let open = split.open(dense);
         let corners = mem::take(&mut self.dense.corners);
-        let Split { polygons, use_of, edges, .. } = split;
-        let finer = Dense { positions, polygons, use_of, edges, open, creases, corners };
+        let (polygons, use_of) = lists.finish();
+        let finer = Dense { positions, polygons, use_of, edges: split.edges, open, creases, corners };
         let spent = mem::replace(&mut self.dense, finer);
-        self.old.get_or_insert(spent.polygons);
+        self.first.get_or_insert(spent);
+        self.edge_birth = inner;
         self.vertex_birth = births;
         self.parent = parent;
         Ok(())
     }
 
-    /// The finest level, and where its elements come from.
-    pub(super) fn finish(self) -> (Dense, Maps) {
-        if self.vertex_birth.len() == self.old_vertices {
-            // No level.
-            let faces = Relation::from_parents(self.old_faces, self.parent);
-            return (self.dense, Maps { vertices: Relation::identity(self.old_vertices), faces });
-        }
-        let old = self.old.unwrap_or_default();
-        let count = self.vertex_birth.len();
+    /// The last level, linked at once: what `Mesh::build` checks is not asked again.
+    pub(super) fn last(
+        self,
+        scheme: Scheme,
+        mesh: &Mesh,
+        columns: &mut Columns,
+        meter: &mut Meter<'_, '_>,
+    ) -> Result<(Mesh, Maps), SubdivideError> {
+        let positions = self.positions(scheme, 1, columns, meter)?;
+        let dense = &self.dense;
+        let (old_corners, centers) =
+            (dense.use_of.len(), positions.len() - 1 - dense.positions.len() - dense.edges);
+        let faces = old_corners + dense.polygons.len() - centers;
+        let mut linking = Linking::new(positions.len() - 1, 2 * dense.edges + old_corners, faces);
+        let split = Split::new(dense, scheme, &mut linking, meter)?;
+        let linked = linking.finish(positions, &split.open(dense));
+        drop(split);
+        meter.advance(3, 4)?;
+        let value = match linked {
+            Some(mesh) => mesh,
+            // A manifold has only manifolds for parts, so this is a bug: say what is wrong with the faces.
+            None => {
+                let positions = self.positions(scheme, 0, &mut Columns::default(), meter)?;
+                let mut lists = Lists::new(dense, scheme);
+                Split::new(dense, scheme, &mut lists, meter)?;
+                let pool = IndexedMesh::trusted(positions, lists.finish().0, None);
+                Mesh::build(&pool).map_err(SubdivideError::Bug)?
+            }
+        };
+        Ok((value, self.maps(scheme, mesh)))
+    }
+
+    /// Where the elements of the level after this come from.
+    fn maps(mut self, scheme: Scheme, mesh: &Mesh) -> Maps {
+        let parent = self.parents(scheme);
+        let faces = Relation::from_parents(self.old_faces, parent);
+        let mut births = mem::take(&mut self.vertex_birth);
+        let dense = self.first.as_ref().unwrap_or(&self.dense);
+        let cut = self.is_cut.then(|| mesh.to_indexed().into_parts().1);
+        let old = cut.as_ref().unwrap_or(&dense.polygons);
+        let ends = dense.ends_of_edges();
+        let count = self.old_vertices + births.len() + self.dense.edges;
         let mut starts = Vec::with_capacity(count + 1);
         let mut items: Vec<u32> = Vec::with_capacity(2 * count);
         starts.push(0);
-        let mut sorted = Vec::new();
-        for &birth in &self.vertex_birth {
+        for v in 0..self.old_vertices as u32 {
+            items.push(v);
+            starts.push(items.len() as u32);
+        }
+        let mut add = |birth: Birth| {
             match birth {
-                Birth::Vertex(v) => items.push(v),
-                Birth::Edge(e) => items.extend(self.ends[e as usize]),
+                Birth::Edge(e) => {
+                    let [a, b] = ends[e as usize];
+                    items.extend([a.min(b), a.max(b)]);
+                }
                 Birth::Face(f) => {
-                    sorted.clear();
-                    sorted.extend_from_slice(&old[f as usize]);
-                    sorted.sort_unstable();
-                    items.extend(&sorted);
+                    let first = items.len();
+                    items.extend_from_slice(&old[f as usize]);
+                    items[first..].sort_unstable();
                 }
             }
             starts.push(items.len() as u32);
+        };
+        births.drain(..).for_each(&mut add);
+        if self.edge_birth.is_empty() {
+            (0..self.dense.edges as u32).for_each(|e| add(Birth::Edge(e)));
+        } else {
+            self.edge_birth.iter().for_each(|&birth| add(birth));
         }
-        let vertices = Relation::from_old_of(self.old_vertices, starts, items);
-        let maps = Maps { vertices, faces: Relation::from_parents(self.old_faces, self.parent) };
-        (self.dense, maps)
+        for (face, &f) in self.dense.polygons.iter().zip(&self.parent) {
+            if has_center(scheme, face.len()) {
+                add(Birth::Face(f));
+            }
+        }
+        Maps { vertices: Relation::from_old_of(self.old_vertices, starts, items), faces }
+    }
+
+    /// The mesh as it is, in triangles if it was cut into them, and where its faces come from.
+    pub(super) fn unrefined(self) -> (Dense, Maps) {
+        let faces = Relation::from_parents(self.old_faces, self.parent);
+        (self.dense, Maps { vertices: Relation::identity(self.old_vertices), faces })
     }
 }
 
-/// The finer faces and their matching.
-struct Split {
-    polygons: Polygons,
+/// Whether a face of so many corners gets a vertex in its middle.
+fn has_center(scheme: Scheme, corners: usize) -> bool {
+    scheme == Scheme::CatmullClark || corners > 3
+}
+
+/// Who takes the finer faces: vertices, and for each corner its use of an edge.
+trait Sink {
+    fn face(&mut self, corners: &[u32], uses: &[u32]);
+}
+
+impl Sink for Linking {
+    #[inline(always)]
+    fn face(&mut self, corners: &[u32], uses: &[u32]) {
+        Linking::face(self, corners, uses);
+    }
+}
+
+/// Faces for the next level.
+struct Lists {
+    corners: Vec<u32>,
     use_of: Vec<u32>,
+    /// Empty where all have one degree.
+    starts: Vec<usize>,
+    degree: Option<usize>,
+}
+
+impl Lists {
+    fn new(dense: &Dense, scheme: Scheme) -> Self {
+        let total = 4 * dense.use_of.len();
+        let centers = dense.polygons.iter().filter(|f| has_center(scheme, f.len())).count();
+        let degree = match centers {
+            0 => Some(3),
+            n if n == dense.polygons.len() => Some(4),
+            _ => None,
+        };
+        let (corners, use_of) = (Vec::with_capacity(total), Vec::with_capacity(total));
+        Self { corners, use_of, starts: vec![0], degree }
+    }
+
+    fn finish(self) -> (Polygons, Vec<u32>) {
+        let polygons = match self.degree {
+            Some(degree) => Polygons::uniform(degree, self.corners),
+            None => Polygons::with_starts(self.starts, self.corners),
+        };
+        (polygons, self.use_of)
+    }
+}
+
+impl Sink for Lists {
+    #[inline(always)]
+    fn face(&mut self, corners: &[u32], uses: &[u32]) {
+        self.corners.extend_from_slice(corners);
+        self.use_of.extend_from_slice(uses);
+        if self.degree.is_none() {
+            self.starts.push(self.corners.len());
+        }
+    }
+}
+
+/// The finer edges; the faces went to the sink.
+struct Split {
     edges: usize,
     /// By coarser edge: the half at the origin of its first use; the other half follows.
     base: Vec<u32>,
@@ -182,26 +308,20 @@ struct Split {
 }
 
 impl Split {
+    /// The finer edges with one use.
+    fn open(&self, dense: &Dense) -> Vec<u32> {
+        dense.open.iter().map(|&e| self.base[e as usize]).flat_map(|e| [e, e + 1]).collect()
+    }
+
     fn new(
         dense: &Dense,
-        has_center: impl Fn(usize) -> bool,
-        centers: usize,
+        scheme: Scheme,
+        sink: &mut impl Sink,
         meter: &mut Meter<'_, '_>,
     ) -> Result<Self, SubdivideError> {
         let faces = dense.polygons.len();
-        let old_corners = dense.polygons.corners().len();
         let (vertices, mut center) =
             (dense.positions.len() as u32, (dense.positions.len() + dense.edges) as u32);
-        let uncut = faces - centers;
-        let (parts, total) = (old_corners + uncut, 4 * old_corners);
-        let mut corners: Vec<u32> = Vec::with_capacity(total);
-        let mut use_of: Vec<u32> = Vec::with_capacity(total);
-        let mut starts: Vec<usize> = Vec::new();
-        let is_uniform = uncut == 0 || centers == 0;
-        if !is_uniform {
-            starts.reserve_exact(parts + 1);
-            starts.push(0);
-        }
         let mut base = vec![NONE; dense.edges];
         let mut inner = Vec::with_capacity(faces);
         let mut edges = 0u32;
@@ -224,49 +344,25 @@ impl Split {
             let near = |u: u32| (base[u as usize >> 1] + (u & 1)) << 1 | u & 1;
             let far = |u: u32| (base[u as usize >> 1] + 1 - (u & 1)) << 1 | u & 1;
             let middle = |u: u32| vertices + (u >> 1);
-            if let (&[a, b, d], &[u, v, w], false) = (face, uses, has_center(n)) {
+            if let (&[a, b, d], &[u, v, w], false) = (face, uses, has_center(scheme, n)) {
                 let (mu, mv, mw) = (middle(u), middle(v), middle(w));
                 let [su, sv, sw] = [spoke, spoke + 1, spoke + 2].map(|s| s << 1);
-                corners.extend([a, mu, mw, b, mv, mu, d, mw, mv, mu, mv, mw]);
-                use_of.extend([
-                    near(u),
-                    su,
-                    far(w),
-                    near(v),
-                    sv,
-                    far(u),
-                    near(w),
-                    sw,
-                    far(v),
-                    sv | 1,
-                    sw | 1,
-                    su | 1,
-                ]);
-                if !is_uniform {
-                    let end = corners.len();
-                    starts.extend([end - 9, end - 6, end - 3, end]);
-                }
+                sink.face(&[a, mu, mw], &[near(u), su, far(w)]);
+                sink.face(&[b, mv, mu], &[near(v), sv, far(u)]);
+                sink.face(&[d, mw, mv], &[near(w), sw, far(v)]);
+                sink.face(&[mu, mv, mw], &[sv | 1, sw | 1, su | 1]);
                 continue;
             }
             let mut before = uses[n - 1];
             for (i, (&a, &u)) in face.iter().zip(uses).enumerate() {
                 // The spoke of a side is used first by the part at the side's origin, but for the last side.
                 let [out, back] = [i, (i + n - 1) % n].map(|i| (spoke + i as u32) << 1);
-                corners.extend([a, middle(u), center, middle(before)]);
                 let (out, back) = (out | u32::from(i + 1 == n), back | u32::from(i != 0));
-                use_of.extend([near(u), out, back, far(before)]);
-                if !is_uniform {
-                    starts.push(corners.len());
-                }
+                sink.face(&[a, middle(u), center, middle(before)], &[near(u), out, back, far(before)]);
                 before = u;
             }
             center += 1;
         }
-        let polygons = if is_uniform {
-            Polygons::uniform(if centers == 0 { 3 } else { 4 }, corners)
-        } else {
-            Polygons::with_starts(starts, corners)
-        };
-        Ok(Self { polygons, use_of, edges: edges as usize, base, inner })
+        Ok(Self { edges: edges as usize, base, inner })
     }
 }

@@ -58,7 +58,8 @@ impl Mesh {
     /// Merges vertices: each joins the lowest vertex kept so far that is nearer than the tolerance, and is kept, where
     /// it is, if there is none. Kept vertices stay at least a tolerance apart, so nothing drifts along a chain.
     ///
-    /// This is [`clean`] on the mesh: what the merges fold or double is repaired on record, faces that no longer fit
+    /// This is [`clean`](crate::cleanup::clean) on the mesh: what the merges fold or double is repaired on record, faces that
+    /// no longer fit
     /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
     /// numbering of [`to_indexed`](Self::to_indexed) to the result's. If all merges are taken back, nothing is on record.
     /// Welding again changes nothing, but where surfaces cross so often that merges were taken back to make room for
