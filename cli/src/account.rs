@@ -60,7 +60,12 @@ fn merged(account: &Account) -> Option<String> {
 /// How many of a kind, and where the first few are.
 fn kind(account: &Account, kind: Kind) -> Vec<String> {
     let count = account.counts.get(&kind).copied().unwrap_or(0);
+    if kind == Kind::MergedVertex {
+        // Told with the weld.
+        return Vec::new();
+    }
     let (noun, what) = text::described(kind);
+    let what = what.strip_suffix(", left").unwrap_or(what);
     let of_kind = || account.defects.iter().filter(|r| r.kind == kind);
     // Of what is listed in part, the step knows how many there are.
     let all = match kind {
@@ -111,7 +116,7 @@ fn verdict(account: &Account) -> String {
 }
 
 fn faces(account: &Account) -> String {
-    let f = &account.faces;
+    let f = &account.face_tally;
     let mut parts = vec![format!("{} kept", f.kept)];
     let more = [(f.changed, "changed"), (f.dropped, "dropped"), (f.added, "new")];
     parts.extend(more.iter().filter(|m| m.0 > 0).map(|(count, what)| format!("{count} {what}")));
