@@ -15,7 +15,7 @@ use crate::{Cancelled, FillHolesOptions, Mesh, SelfIntersectionOptions, SliverEr
 use std::collections::BTreeMap;
 
 /// By what element of the soup a record names one of the mesh.
-pub(super) struct Names {
+pub(crate) struct Names {
     vertex: Vec<u32>,
     /// [`NONE`] for a face that was made from nothing.
     face: Vec<u32>,
@@ -142,7 +142,7 @@ impl Stage {
 }
 
 impl Names {
-    pub(super) fn new(vertex: Vec<u32>, face: Vec<u32>) -> Self {
+    pub(crate) fn new(vertex: Vec<u32>, face: Vec<u32>) -> Self {
         Self { vertex, face, made: BTreeMap::new() }
     }
 
@@ -154,7 +154,7 @@ impl Names {
     }
 
     /// An element of the mesh in the soup's numbers; a face made from nothing is named by a vertex.
-    fn of(&self, element: Element) -> Element {
+    pub(crate) fn of(&self, element: Element) -> Element {
         let vertex = |v: u32| self.vertex[v as usize];
         match element {
             Element::Vertex(v) => Element::Vertex(vertex(v)),
@@ -177,6 +177,12 @@ impl Names {
                 Element::VertexOnEdge([vertex(v), a.min(b), a.max(b)])
             }
         }
+    }
+
+    /// The names after another clean-up, whose names are in these numbers; both without faces made from nothing.
+    pub(crate) fn then(&self, next: &Self) -> Self {
+        let named = |names: &[u32], by: &[u32]| by.iter().map(|&i| names[i as usize]).collect();
+        Self::new(named(&self.vertex, &next.vertex), named(&self.face, &next.face))
     }
 
     /// The names after a step: of what several became, the lowest.
