@@ -1,5 +1,6 @@
 //! The command line of meshwright: inspect, clean and convert meshes.
 
+mod account;
 mod args;
 mod commands;
 mod import;

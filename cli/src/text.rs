@@ -72,7 +72,7 @@ pub(crate) fn alike(report: &Report) -> impl Iterator<Item = &[LostValue]> {
 }
 
 /// What a kind of record counts, and what was found and done.
-fn described(kind: Kind) -> (&'static str, &'static str) {
+pub(crate) fn described(kind: Kind) -> (&'static str, &'static str) {
     match kind {
         Kind::NonFiniteVertex => ("vertex", "not finite, dropped"),
         Kind::NonFiniteFace => ("face", "with a vertex that is not finite, dropped"),

@@ -74,7 +74,8 @@ fn clean_prints_its_account_and_writes_it_to_files() {
     assert_eq!(maps["faces"]["new_of"][12], serde_json::json!([]));
     assert_eq!(maps["vertices"]["old_of"].as_array().map(Vec::len), Some(16));
     let text = String::from_utf8(run(&dir, &args).stdout).expect("text");
-    assert!(text.contains("2 vertices where surfaces touch, split: vertex"), "{text}");
+    assert!(text.contains("2 vertices where surfaces touch, split\n      vertex"), "{text}");
+    assert!(text.contains("of 13 faces: 12 kept, 1 dropped\n"), "{text}");
     assert!(text.contains("--weld none"), "{text}");
     // Both looks are whole ones.
     let looked = json(&dir, &["inspect", "a.obj"]).1;

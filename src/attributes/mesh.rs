@@ -446,7 +446,9 @@ impl Mesh {
 
     fn picked<K, T: Value>(&self, kind: Kind, column: Option<Column<K, T>>, slots: &[u32]) -> Option<Vec<T>> {
         let store = self.columns.store::<T>(kind, column?.index)?;
+        // Of no elements there are no attributes.
         Some(slots.iter().filter_map(|&slot| store.get(slot).cloned()).collect())
+            .filter(|v: &Vec<T>| !v.is_empty())
     }
 }
 

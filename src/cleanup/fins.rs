@@ -2,6 +2,7 @@
 
 use super::CleanError;
 use super::drop::drop_parts;
+use super::open::hopeless;
 use super::step::{Areas, Parts, unchanged};
 use super::weld::weld;
 use crate::matching::NONE;
@@ -13,8 +14,9 @@ use std::collections::BTreeSet;
 /// - it hangs on another part, its host: an edge of its boundary lies at an inner edge of the host, both ends closer than
 ///   `tolerance` (0 for equal coordinates). That is how clean-up leaves what it does not pair at an edge with three or
 ///   more faces; a wall within a solid is a fin too.
-/// - its area is at most half of its hosts', and of those they hang on in turn. No flat wall within a solid has more, and
-///   a body with holes is no fin of something small that touches it.
+/// - its area is at most half of that of the bodies among its hosts, and those they hang on in turn. No flat wall within a
+///   solid has more, and a body with holes is no fin of something small that touches it. Sheets, and what cannot be
+///   oriented, are no bodies: on them nothing is dropped.
 ///
 /// A record for each face, in the numbers of the mesh before. O(n log n), linear without open parts.
 ///
@@ -37,17 +39,22 @@ pub fn drop_fins(mesh: &mut Mesh, tolerance: f64) -> Result<Outcome<usize>, Clea
     if tolerance.is_nan() || tolerance < 0.0 || tolerance.is_infinite() {
         return Err(CleanError::BadTolerance(tolerance));
     }
+    if mesh.is_closed() {
+        return Ok(unchanged(mesh, 0, Step::DropFins));
+    }
     let parts = Parts::of(mesh);
-    if parts.open().next().is_none() || parts.len() == 1 {
+    if parts.len() == 1 {
         return Ok(unchanged(mesh, 0, Step::DropFins));
     }
     let hosts = hosts(mesh, &parts, tolerance)?;
     let areas = Areas::of(mesh);
     let area: Vec<f64> = parts.faces.iter().map(|faces| areas.scaled(faces)).collect();
+    let is_body: Vec<bool> = hopeless(mesh, &parts)?.iter().map(Option::is_none).collect();
     let fins: Vec<usize> = parts
         .open()
         .filter(|&part| {
-            let held: f64 = held_by(part, &hosts).iter().map(|&host| area[host]).sum();
+            let held: f64 =
+                held_by(part, &hosts).iter().filter(|&&host| is_body[host]).map(|&host| area[host]).sum();
             held > 0.0 && area[part] <= 0.5 * held
         })
         .collect();

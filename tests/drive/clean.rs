@@ -139,9 +139,9 @@ fn solid(soup: &PolygonSoup, weld: Weld) {
     let mesh = &cleaned.value;
     assert_eq!(mesh.violations(), []);
     let pool = mesh.to_indexed();
-    let account = Account::new(soup, (Profile::Solid, weld), &pool, &cleaned.report, &cleaned.maps);
+    let account = Account::new(soup, (Profile::Solid, weld), &pool, cleaned.report.clone(), &cleaned.maps);
     let account = account.expect("a soup is never refused");
-    let tally = account.faces;
+    let tally = account.face_tally;
     assert_eq!(tally.kept + tally.changed + tally.dropped, soup.polygons.len());
     assert_eq!(account.solid, mesh.is_closed());
     let records = &cleaned.report.records;

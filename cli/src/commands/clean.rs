@@ -1,10 +1,12 @@
 //! `clean`: the main job.
 
+use crate::account::told;
 use crate::args::{Clean, Profile};
 use crate::session::{Answer, Failure, Phase, Session};
 use crate::text::{self, counted};
 use crate::{import, output, progress};
-use meshwright::cleanup::{self, Account, CleanOptions, Facts, Weld};
+use meshwright::cleanup::{self, Account, CleanOptions, Weld};
+use meshwright::io::Format;
 use meshwright::{Control, Outcome, PolygonSoup, Step};
 
 pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failure> {
@@ -22,8 +24,9 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         })
     })?;
     let Outcome { value, report, maps } = outcome;
+    let not_carried = text::not_carried(&report);
     let account =
-        session.timed(Phase::Run, || Account::new(&loaded.soup, (profile, weld), &value, &report, &maps))?;
+        session.timed(Phase::Run, || Account::new(&loaded.soup, (profile, weld), &value, report, &maps))?;
     let soup: PolygonSoup = session.timed(Phase::Run, || value.into());
     // All files are complete before the first is put in its place.
     let (staged, lost) = output::stage_mesh(session, &args.output, &soup)?;
@@ -31,50 +34,38 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     if let Some(path) = &args.maps {
         staged.push(session.timed(Phase::Write, || output::stage_json(path, &maps))?);
     }
+    let remerged = if args.output.format()? == Format::Stl { at_one_place(&soup)? } else { 0 };
     let json = session
         .fields(args.report.is_some())
         .with_all(&account)
         .with("notes", &loaded.notes)
-        .with("lost", &lost);
+        .with("lost", &lost)
+        .with("remerged_vertices", &remerged);
     if let Some(path) = &args.report {
-        let object = session.object(json.clone());
-        staged.push(session.timed(Phase::Write, || output::stage_text(path, &object))?);
+        staged.push(output::stage_with(path, |sink| session.write_object(&json, sink))?);
     }
     for file in staged {
         file.commit()?;
     }
-    let mut text = String::new();
-    let mut lines = text::changes(&report);
-    if lines.is_empty() {
-        lines.push("nothing had to be changed".to_owned());
+    let mut text = told(&account);
+    for line in not_carried {
+        text.push_str(&format!("{line}\n"));
     }
-    lines.extend(text::not_carried(&report));
-    for line in lines {
-        text.push_str(&line);
-        text.push('\n');
-    }
-    text.push_str(&format!(
-        "wrote {}\nbefore: {}\nafter:  {}\n",
-        args.output.output.display(),
-        summary(&account.before),
-        summary(&account.after)
-    ));
-    let split = report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0);
-    if split && weld != Weld::None {
+    text.push_str(&format!("\nwrote {}\n", args.output.output.display()));
+    let split = account.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0);
+    if remerged > 0 {
+        let vertices = counted(remerged, "vertex");
+        text.push_str(&format!(
+            "STL knows no vertices: {vertices} at the place of others will merge when it is read; PLY and OBJ keep them\n"
+        ));
+    } else if split {
         text.push_str("vertices that were split lie at one place: look at the result with --weld none\n");
     }
     Ok(Answer { json, text, is_no: profile == cleanup::Profile::Solid && !account.solid })
 }
 
-fn summary(f: &Facts) -> String {
-    let is = |yes: bool, name: &str| if yes { name.to_owned() } else { format!("not {name}") };
-    format!(
-        "{}, {}, {}, {}, {}, {}",
-        counted(f.vertices, "vertex"),
-        counted(f.faces, "face"),
-        counted(f.components, "component"),
-        is(f.closed, "closed"),
-        is(f.manifold, "manifold"),
-        is(f.oriented, "oriented")
-    )
+/// How many vertices lie where an earlier one does.
+fn at_one_place(soup: &PolygonSoup) -> Result<usize, Failure> {
+    let welded = cleanup::index(soup, Weld::Exact)?;
+    Ok(soup.positions.len().saturating_sub(welded.value.vertex_count()))
 }
