@@ -67,7 +67,11 @@ fn main() -> Result<(), Box<dyn Error>> {
                     let whole = Truth::new(truth.name, truth.pool.clone());
                     (whole, faulty.soup(), faulty.intact)
                 };
-                let shape = if fault == "touching at a vertex" { format!("{} twice", truth.name) } else { truth.name.into() };
+                let shape = if fault == "touching at a vertex" {
+                    format!("{} twice", truth.name)
+                } else {
+                    truth.name.into()
+                };
                 let case = format!("{}-{}-{seed}", truth.name, fault).replace(' ', "_");
                 writeln!(cases, "{case}\t{shape}\t{fault}")?;
                 fs::write(dir.join(format!("{shape}.truth.obj")), obj(&shapes::soup(&whole.pool))?)?;

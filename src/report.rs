@@ -143,7 +143,8 @@ named! {
         CrossingShell = "crossing_shell",
         /// An open part that is a sheet: to close it, a filler of about its own size would be needed. Left.
         OpenSheet = "open_sheet",
-        /// An open part that was cut because it cannot be oriented. Left.
+        /// An open part of which two boundary edges lie at one place and run the same way: so it is where a surface that
+        /// cannot be oriented was cut. Left.
         NotOrientable = "not_orientable",
         /// An open part with holes that could not be filled. Left.
         OpenPart = "open_part",

@@ -61,7 +61,12 @@ fn merged(account: &Account) -> Option<String> {
 /// How many of a kind, and where the first few are.
 fn kind(account: &Account, kind: Kind) -> Vec<String> {
     let count = account.counts.get(&kind).copied().unwrap_or(0);
+    if kind == Kind::MergedVertex {
+        // Told with the weld.
+        return Vec::new();
+    }
     let (noun, what) = text::described(kind);
+    let what = what.strip_suffix(", left").unwrap_or(what);
     let of_kind = || account.defects.iter().filter(|r| r.kind == kind);
     // Of what is listed in part, the step knows how many there are.
     let all = match kind {

@@ -108,7 +108,7 @@ pub(crate) fn described(kind: Kind) -> (&'static str, &'static str) {
         Kind::TurnedShell => ("shell", "inside out, turned"),
         Kind::CrossingShell => ("shell", "crossing another"),
         Kind::OpenSheet => ("sheet", "that cannot become a solid, left"),
-        Kind::NotOrientable => ("part", "that cannot be oriented, left"),
+        Kind::NotOrientable => ("part", "whose edges meet the wrong way round (not orientable), left"),
         Kind::OpenPart => ("part", "with holes that could not be filled, left"),
         Kind::SelfIntersection => ("pair", "of faces that pass through each other, left"),
         Kind::UnsearchedFaces => {

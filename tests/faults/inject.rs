@@ -6,6 +6,9 @@ use meshwright::glam::{DVec3, dvec3};
 use meshwright::{IndexedMesh, PolygonSoup};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// An edge with its two faces and its place in each.
+type Joint = ([u32; 2], [(usize, usize); 2]);
+
 /// A shape under way to a faulty file.
 #[derive(Clone)]
 pub(crate) struct Faulty {
@@ -66,7 +69,7 @@ impl Faulty {
 
     /// A two-face edge at random whose faces are both as in the truth: its ends as the first face runs along it, and the two
     /// faces.
-    fn some_edge(&mut self) -> Option<([u32; 2], [(usize, usize); 2])> {
+    fn some_edge(&mut self) -> Option<Joint> {
         let edges: Vec<_> = self.edges().into_iter().filter(|e| e.1.len() == 2).collect();
         for _ in 0..100 {
             let (_, at) = &edges[self.below(edges.len())];

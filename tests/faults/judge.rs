@@ -12,7 +12,8 @@ pub(crate) type Faults = Vec<String>;
 
 macro_rules! check {
     ($faults:expr, $is:expr, $($text:tt)+) => {
-        if !$is {
+        let is_fine: bool = $is;
+        if !is_fine {
             $faults.push(format!($($text)+));
         }
     };

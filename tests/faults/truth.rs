@@ -1,6 +1,6 @@
 //! Shapes of known truth: closed, manifold, wound outward, cavities inward.
 
-use crate::shapes::{both, cube, fanned, icosphere, pool, torus};
+use crate::shapes::{both, fanned, icosphere, pool, torus};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{IndexedMesh, Mesh};
 
@@ -152,7 +152,6 @@ pub(crate) fn sheet_of_quads(n: u32) -> IndexedMesh {
 #[test]
 fn the_shapes_are_what_they_are_said_to_be() {
     let all = truths();
-    assert_eq!(cube().face_count(), 6);
     for truth in &all {
         println!("{}: {} faces, volume {}", truth.name, truth.pool.face_count(), truth.volume);
     }

@@ -55,7 +55,8 @@ impl Igl {
         self.send(mesh, points, "facts")
     }
 
-    /// Asks for another mesh: `loop1` is one level of `igl.loop`, `upsample2` two of `igl.upsample`.
+    /// Asks for another mesh: `loop1` is one level of `igl.loop`, `upsample2` two of `igl.upsample`, `qslim:100` what
+    /// `igl.qslim` makes of it with 100 faces.
     pub(crate) fn ask_for(&mut self, mesh: &IndexedMesh, call: &str) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let opinion = self.call(mesh, call);
         let triangles = opinion.integers("faces");

@@ -98,7 +98,11 @@ def main():
         if len(f) == 0 or f.min() < 0 or f.max() >= len(v):
             facts, arrays = {"error": "no faces, or indices out of range"}, {}
         else:
-            facts, arrays = CALLS[request["call"]](v, f, points)
+            call, _, faces = request["call"].partition(":")
+            if call == "qslim":
+                facts, arrays = mesh(*igl.qslim(v, f, max_m=int(faces))[:2])
+            else:
+                facts, arrays = CALLS[call](v, f, points)
         facts["arrays"] = [[name, a.dtype.str, list(a.shape)] for name, a in arrays.items()]
         sink.write(json.dumps(facts).encode() + b"\n")
         for array in arrays.values():

@@ -114,7 +114,7 @@ impl Ring {
     }
 
     /// Exchanges the planes of the faces around this end in the vertices around, and returns those of the new faces.
-    /// Where `far_faces`, the two faces that go are taken out of their third corners too.
+    /// The planes of the faces that are `gone`, right and left, are taken out of their third corners.
     #[inline]
     fn exchange(&self, part: &mut Part<'_>, gone: Option<[Planes; 2]>) -> Planes {
         let (mut fan, mut carried) = (Planes::default(), Planes::default());
@@ -186,8 +186,8 @@ impl Part<'_> {
         // Away from features the planes of the faces that change are exchanged, which is less than to sum up anew.
         let is_plain = candidate.way == Way::Anywhere && goes.is_plain && stays.is_plain;
         let fan = if is_plain {
-            let gone = goes.gone(from).map(plane);
-            let around = goes.exchange(self, Some(gone));
+            let [right, left] = goes.gone(from);
+            let around = goes.exchange(self, Some([plane(right), plane(left)]));
             around + stays.exchange(self, None)
         } else {
             Planes::default()
@@ -226,9 +226,7 @@ impl Part<'_> {
             if self.is_feature(n) && self.is_feature(p) {
                 return Err(Refusal::Feature);
             }
-            let apex = |h: u32| (!self.is_open(h)).then(|| self.origin(self.next(self.next(h))));
-            let beyond = [n, p].map(|h| apex(h ^ 1));
-            if beyond[0].is_some() && beyond[0] == beyond[1] {
+            if !self.is_open(n ^ 1) && !self.is_open(p ^ 1) && self.apex(n ^ 1) == self.apex(p ^ 1) {
                 return Err(Refusal::Topology);
             }
         }
@@ -236,6 +234,10 @@ impl Part<'_> {
         let (goes, stays) = (&mut scratch.goes, &mut scratch.stays);
         goes.walk(self, h, middle);
         if self.spot(b).is_heavy() {
+            if !self.is_whole {
+                // Its neighbours' neighbours may be in another part.
+                return Err(Refusal::Valence);
+            }
             stays.spokes.clear();
             return self.check_heavy(h, &goes.spokes[1..], sides);
         }

@@ -7,6 +7,7 @@ use crate::Mesh;
 use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
 use crate::matching::NONE;
+use crate::parallel::pairs;
 use glam::DVec3;
 
 /// To numbers about zero and about one, and back.
@@ -119,8 +120,7 @@ impl Copy {
             (first[ends[0] as usize], first[ends[1] as usize]) = (2 * i, 2 * i + 1);
         }
         let whole = self.whole();
-        let fans = first.iter().map(|&h| whole.fan_around(h, line_weight)).collect();
-        let origins: Vec<Planes> = first.iter().map(|&h| whole.faces_around(h)).collect();
+        let (fans, origins) = pairs(&first, |&h| whole.planes_around(h, line_weight));
         self.fans = fans;
         if has_bound {
             self.memory = origins.iter().map(|&planes| planes.into()).collect();
@@ -139,6 +139,7 @@ impl Copy {
             faces: &mut self.faces,
             first_vertex: 0,
             first_edge: 0,
+            is_whole: true,
             removed: 0,
         }
     }

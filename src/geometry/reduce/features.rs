@@ -67,18 +67,40 @@ impl Part<'_> {
     /// The weight of a face is more than its area, and [`Copy::candidate`] adds to that: what counts is the mean distance,
     /// not its square, and on smooth surfaces the one grows as the square root of the other. The exponents are measured.
     pub(super) fn fan_around(&self, first: u32, line_weight: f64) -> Planes {
-        self.planes_around(first, weigh, line_weight)
+        let mut fan = Planes::default();
+        self.each_around(first, |square, double_area, along| match along {
+            None => fan = fan + Planes::one(double_area, weigh(0.5 * square.sqrt()) / square),
+            Some(along) => {
+                fan = fan + upright(along, double_area, line_weight * weigh(along.length_squared()))
+            }
+        });
+        fan
     }
 
-    /// The planes that the error is told from.
-    pub(super) fn faces_around(&self, first: u32) -> Planes {
-        self.planes_around(first, |area| area, 1.0)
+    /// The same, and the planes that the error is told from: of the same faces and edges, by area.
+    pub(super) fn planes_around(&self, first: u32, line_weight: f64) -> (Planes, Planes) {
+        let (mut fan, mut faces) = (Planes::default(), Planes::default());
+        self.each_around(first, |square, double_area, along| match along {
+            None => {
+                let area = 0.5 * square.sqrt();
+                let plane = Planes::one(double_area, area / square);
+                fan = fan + plane * area.sqrt();
+                faces = faces + plane;
+            }
+            Some(along) => {
+                let length_squared = along.length_squared();
+                let plane = upright(along, double_area, 1.0);
+                fan = fan + plane * (line_weight * weigh(length_squared));
+                faces = faces + plane * length_squared;
+            }
+        });
+        (fan, faces)
     }
 
-    /// The planes of the faces around the origin of a half-edge, each with a weight by its area, and those that stand
-    /// upright on these faces along feature edges, by the square of the edge.
-    fn planes_around(&self, first: u32, weigh: impl Fn(f64) -> f64, line_weight: f64) -> Planes {
-        let mut planes = Planes::default();
+    /// Visits the faces around the origin of a half-edge: the square of twice the area and twice the area vector, and then
+    /// the same with each of its feature edges that start there.
+    #[inline(always)]
+    fn each_around(&self, first: u32, mut visit: impl FnMut(f64, DVec3, Option<DVec3>)) {
         let at = self.spot(self.origin(first)).position;
         let mut h = first;
         let (mut end, mut next) = self.around(h);
@@ -92,23 +114,25 @@ impl Part<'_> {
                 let double_area = next_along.cross(along);
                 let square = double_area.length_squared();
                 if square > NO_AREA {
-                    planes = planes + Planes::one(double_area, weigh(0.5 * square.sqrt()) / square);
+                    visit(square, double_area, None);
                     for (h, along) in [(h, along), (after, next_along)] {
                         if self.is_feature(h) {
-                            // A vanishing edge has no direction, and no weight either.
-                            let upright = along.cross(double_area).normalize_or_zero();
-                            let weight = line_weight * weigh(along.length_squared());
-                            planes = planes + Planes::one(upright, weight);
+                            visit(square, double_area, Some(along));
                         }
                     }
                 }
             }
             (h, along) = (after, next_along);
             if h == first {
-                return planes;
+                return;
             }
         }
     }
+}
+
+/// The plane that stands upright on a face along an edge. A vanishing edge has no direction, and no weight either.
+fn upright(along: DVec3, double_area: DVec3, weight: f64) -> Planes {
+    Planes::one(along.cross(double_area).normalize_or_zero(), weight)
 }
 
 /// The square of twice an area, below which it is what rounding leaves of none.

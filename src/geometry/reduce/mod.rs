@@ -278,7 +278,10 @@ impl Mesh {
     /// in the account; none are if the mesh has few enough faces as it is. Elements that are left keep their keys. Columns,
     /// attributes, checkpoints and the record of changes see every collapse.
     ///
-    /// The result depends on nothing but the mesh and the options. O(n log n), on one thread.
+    /// The result depends on nothing but the mesh and the options. O(n log n); a large mesh is reduced in parts, on several
+    /// threads with the feature `rayon`, with the same result for any number of them. There, and in any mesh of more than
+    /// some 130,000 edges, the order is strictly that of the costs near the target alone, and before that within a factor
+    /// of two.
     ///
     /// # Errors
     /// [`ReduceError`]; nothing has changed then.

@@ -121,7 +121,7 @@ impl Edge {
 
     #[inline]
     pub(super) fn ends(&self) -> [u32; 2] {
-        self.origin.map(|v| v & !TOP)
+        [self.origin[0] & !TOP, self.origin[1] & !TOP]
     }
 
     #[inline]
@@ -163,6 +163,8 @@ pub(super) struct Part<'a> {
     pub(super) faces: &'a mut [[u32; 2]],
     pub(super) first_vertex: u32,
     pub(super) first_edge: u32,
+    /// Whether there are no others.
+    pub(super) is_whole: bool,
     /// How many faces are gone.
     pub(super) removed: usize,
 }
@@ -186,12 +188,13 @@ impl<'a> Part<'a> {
             faces: other_faces,
             first_vertex: first_vertex + vertices as u32,
             first_edge: first_edge + edges as u32,
+            is_whole: false,
             removed: 0,
         };
-        (
-            Part { spots, fans, memory, edges: first, keys, faces, first_vertex, first_edge, removed: 0 },
-            others,
-        )
+        let (edges, is_whole, removed) = (first, false, 0);
+        let part =
+            Part { spots, fans, memory, edges, keys, faces, first_vertex, first_edge, is_whole, removed };
+        (part, others)
     }
 }
 
@@ -261,6 +264,12 @@ impl Part<'_> {
     #[inline]
     pub(super) fn origin(&self, h: u32) -> u32 {
         self.edge(h >> 1).origin[(h & 1) as usize] & !TOP
+    }
+
+    /// The third corner of a triangle.
+    #[inline]
+    pub(super) fn apex(&self, h: u32) -> u32 {
+        self.around(self.next(h)).0
     }
 
     /// The target of a spoke and the spoke after it, clockwise.

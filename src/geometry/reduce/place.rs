@@ -60,7 +60,7 @@ pub(super) fn error(sum: f64, weight: f64, length_squared: f64) -> f64 {
 }
 
 /// Which end may go, by what holds the ends of the edge.
-#[inline]
+#[inline(always)]
 fn way(a: &Spot, b: &Spot, is_feature: bool) -> Result<Way, Refusal> {
     let way = match (a.hold(), b.hold()) {
         (Hold::Free, Hold::Free) => Way::Anywhere,
@@ -83,7 +83,7 @@ fn way(a: &Spot, b: &Spot, is_feature: bool) -> Result<Way, Refusal> {
 
 impl Part<'_> {
     /// What collapsing an edge would do, as far as its ends tell.
-    #[inline]
+    #[inline(always)]
     pub(super) fn candidate(&self, e: u32) -> Result<Candidate, Refusal> {
         let edge = self.edge(e);
         let [a, b] = edge.ends();
@@ -91,7 +91,7 @@ impl Part<'_> {
         if self.spot(a.min(b)).is_seam() || self.spot(a.max(b)).is_seam() {
             return Err(Refusal::Later);
         }
-        let ([from, to], [fan_a, fan_b]) = ([a, b].map(|v| self.spot(v)), [a, b].map(|v| self.fan(v)));
+        let (from, to, fan_a, fan_b) = (self.spot(a), self.spot(b), self.fan(a), self.fan(b));
         let way = way(from, to, edge.is_feature())?;
         let half = (to.position - from.position) * 0.5;
         let middle = from.position + half;

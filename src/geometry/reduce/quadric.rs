@@ -4,7 +4,7 @@
 //! of its own, near where it is small, so that the digits do not go into the distance from the origin.
 
 use glam::DVec3;
-use std::ops::{Add, Sub};
+use std::ops::{Add, Mul, Sub};
 
 /// The sum of `weight * normal normalᵀ` over planes: xx xy xz yy yz zz.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,19 +20,19 @@ pub(super) struct Quadric {
 
 impl Planes {
     /// One plane; the normal need not have unit length, its square counts.
-    #[inline]
+    #[inline(always)]
     pub(super) fn one(normal: DVec3, weight: f64) -> Self {
         let (n, m) = (normal, normal * weight);
         Self([m.x * n.x, m.x * n.y, m.x * n.z, m.y * n.y, m.y * n.z, m.z * n.z])
     }
 
     /// The sum of the weights.
-    #[inline]
+    #[inline(always)]
     pub(super) fn weight(&self) -> f64 {
         self.0[0] + self.0[3] + self.0[5]
     }
 
-    #[inline]
+    #[inline(always)]
     fn times(&self, x: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.0;
         DVec3::new(
@@ -44,7 +44,7 @@ impl Planes {
 
     /// Two sums about the middle between two points: all of the one pass through the point at `-half`, all of the other
     /// through that at `half`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn joined(a: &Self, b: &Self, half: DVec3) -> Quadric {
         let (mut sum, mut difference) = (a.0, a.0);
         for i in 0..6 {
@@ -56,7 +56,7 @@ impl Planes {
     }
 
     /// Where all of them pass through one point, as seen from the point at `by`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn about(&self, by: DVec3) -> Quadric {
         let b = self.times(by);
         Quadric { a: *self, b, c: b.dot(by) }
@@ -65,31 +65,31 @@ impl Planes {
 
 impl Quadric {
     /// The same about the point at `by`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn about(&self, by: DVec3) -> Self {
         let turned = self.a.times(by);
         Self { a: self.a, b: self.b + turned, c: self.c + (self.b + self.b + turned).dot(by) }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn at_origin(&self) -> f64 {
         self.c
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&self, x: DVec3) -> f64 {
         (self.b + self.b + self.a.times(x)).dot(x) + self.c
     }
 
     /// The sum of the weights.
-    #[inline]
+    #[inline(always)]
     pub(super) fn weight(&self) -> f64 {
         self.a.weight()
     }
 
     /// Where it is least, drawn towards the point it is about by `pull` times its weight, so that there is one such place:
     /// on a plane or along a crease the one nearest to that point.
-    #[inline]
+    #[inline(always)]
     pub(super) fn least(&self, pull: f64) -> Option<(DVec3, Factors)> {
         let factors = Factors::of(&self.a.0, pull * self.weight())?;
         Some((factors.solve(-self.b), factors))
@@ -106,7 +106,7 @@ impl From<Planes> for Quadric {
 impl Sub for Planes {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         let mut a = self.0;
         a.iter_mut().zip(other.0).for_each(|(a, b)| *a -= b);
@@ -114,10 +114,19 @@ impl Sub for Planes {
     }
 }
 
+impl Mul<f64> for Planes {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, by: f64) -> Self {
+        Self(self.0.map(|a| a * by))
+    }
+}
+
 impl Add for Planes {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let mut a = self.0;
         a.iter_mut().zip(other.0).for_each(|(a, b)| *a += b);
@@ -128,7 +137,7 @@ impl Add for Planes {
 impl Add for Quadric {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
     }
@@ -145,7 +154,7 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    #[inline]
+    #[inline(always)]
     fn of(&[xx, xy, xz, yy, yz, zz]: &[f64; 6], shift: f64) -> Option<Self> {
         let dx = xx + shift;
         let ix = 1.0 / dx;
@@ -160,7 +169,7 @@ impl Factors {
         (is_positive && inverse.is_finite()).then_some(Self { inverse, yx, zx, zy })
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn solve(&self, v: DVec3) -> DVec3 {
         let y = v.y - self.yx * v.x;
         let z = v.z - self.zx * v.x - self.zy * y;

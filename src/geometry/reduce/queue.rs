@@ -1,9 +1,13 @@
 //! The queue of edges: buckets of costs that differ by less than two percent.
 
 /// Edges by cost. A cost counts by the upper bits of its `f32`, which order as the number does; within a bucket edges go
-/// by number, so that they lie together in memory.
+/// by number, so that they lie together in memory. Only costs within the factor of two that is being emptied have a bucket
+/// each, so that what is put in finds all buckets in the cache.
 pub(super) struct Queue {
-    buckets: Vec<Vec<u32>>,
+    /// By factor of two.
+    coarse: Vec<Vec<u32>>,
+    /// By bucket, of the factor of two of the first one.
+    fine: Vec<Vec<u32>>,
     /// The first bucket that may hold something.
     at: usize,
     /// The bucket that is being emptied, and how far.
@@ -14,78 +18,87 @@ pub(super) struct Queue {
 const SHIFT: u32 = 17;
 /// So many buckets for costs within a factor of two.
 pub(super) const DOUBLING: usize = 1 << (23 - SHIFT);
+/// Costs are no less than zero.
+const BUCKETS: usize = (f32::INFINITY.to_bits() >> SHIFT) as usize + 1;
 /// No bucket: the edge waits for something around it to change.
 pub(super) const PARKED: u16 = u16::MAX;
 
 impl Queue {
     pub(super) fn new() -> Self {
-        // Costs are no less than zero.
-        let buckets = vec![Vec::new(); (f32::INFINITY.to_bits() >> SHIFT) as usize + 1];
-        Self { buckets, at: 0, list: Vec::new(), done: 0 }
+        let lists = |n| vec![Vec::new(); n];
+        Self {
+            coarse: lists(BUCKETS / DOUBLING + 1),
+            fine: lists(DOUBLING),
+            at: 0,
+            list: Vec::new(),
+            done: 0,
+        }
     }
 
     /// The bucket for a cost; none that has been emptied already.
     #[inline]
     pub(super) fn bucket(&self, cost: f64) -> u16 {
-        (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).clamp(self.at, self.buckets.len() - 1) as u16
+        (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).clamp(self.at, BUCKETS - 1) as u16
     }
 
     #[inline]
     pub(super) fn push(&mut self, bucket: u16, edge: u32) {
-        self.buckets[bucket as usize].push(edge);
+        let bucket = bucket as usize;
+        if bucket / DOUBLING == self.at / DOUBLING {
+            self.fine[bucket % DOUBLING].push(edge);
+        } else {
+            self.coarse[bucket / DOUBLING].push(edge);
+        }
     }
 
-    /// The next entry and its bucket: out of date if the edge has another bucket by now.
-    #[inline]
-    pub(super) fn pop(&mut self, end: usize) -> Option<(u32, u16)> {
+    /// Goes on to the first bucket that has entries. `key` tells where an edge is by now: what is not where it was put is
+    /// dropped.
+    pub(super) fn first(&mut self, key: impl Fn(u32) -> u16) -> Option<usize> {
         while self.done == self.list.len() {
-            if self.at >= end {
-                return None;
-            }
-            while self.buckets[self.at].is_empty() {
-                if self.at + 1 >= end.min(self.buckets.len()) {
-                    return None;
+            let octave = self.at / DOUBLING;
+            if let Some(i) = (self.at % DOUBLING..DOUBLING).find(|&i| !self.fine[i].is_empty()) {
+                self.at = octave * DOUBLING + i;
+                (self.list, self.fine[i]) =
+                    (std::mem::take(&mut self.fine[i]), std::mem::take(&mut self.list));
+                self.fine[i].clear();
+                self.list.retain(|&e| key(e) as usize == self.at);
+                self.list.sort_unstable();
+                self.done = 0;
+            } else {
+                let next = (octave + 1..self.coarse.len()).find(|&i| !self.coarse[i].is_empty())?;
+                self.at = next * DOUBLING;
+                for e in std::mem::take(&mut self.coarse[next]) {
+                    let bucket = key(e) as usize;
+                    if bucket / DOUBLING == next {
+                        self.fine[bucket % DOUBLING].push(e);
+                    }
                 }
-                self.buckets[self.at] = Vec::new();
-                self.at += 1;
             }
-            self.list.clear();
-            self.done = 0;
-            std::mem::swap(&mut self.list, &mut self.buckets[self.at]);
-            self.list.sort_unstable();
         }
-        self.done += 1;
-        Some((self.list[self.done - 1], self.at as u16))
+        Some(self.at)
     }
 
-    /// What comes next, as far as it is in order already.
-    #[inline]
-    pub(super) fn ahead(&self, count: usize) -> &[u32] {
-        &self.list[self.done..(self.done + count).min(self.list.len())]
-    }
-
-    /// The first bucket that holds anything.
-    pub(super) fn first(&mut self) -> Option<usize> {
-        if self.done < self.list.len() {
-            return Some(self.at);
-        }
-        (self.at..self.buckets.len()).find(|&i| !self.buckets[i].is_empty())
-    }
-
-    /// How many entries there are in the buckets before `end`.
+    /// How many entries there are before `end`, which must be within the factor of two of the first.
     pub(super) fn count(&self, end: usize) -> usize {
-        let begun = if self.at < end { self.list.len() - self.done } else { 0 };
-        let buckets = self.buckets.get(self.at..end.min(self.buckets.len())).unwrap_or_default();
-        begun + buckets.iter().map(Vec::len).sum::<usize>()
+        if self.at >= end {
+            return 0;
+        }
+        let last = if end / DOUBLING > self.at / DOUBLING { DOUBLING } else { end % DOUBLING };
+        self.list.len() - self.done + self.fine[self.at % DOUBLING..last].iter().map(Vec::len).sum::<usize>()
     }
 
-    /// The bucket that is being emptied.
-    pub(super) fn at(&self) -> u16 {
-        self.at as u16
+    /// All entries of the first bucket, when it has just begun.
+    #[inline]
+    pub(super) fn begun(&self) -> Option<&[u32]> {
+        (self.done == 0).then_some(&self.list)
     }
 
-    pub(super) fn is_at_batch(&self, of: usize) -> bool {
-        self.done.is_multiple_of(of)
+    /// The next entry of the first bucket, and the bucket: out of date if the edge has another by now.
+    #[inline]
+    pub(super) fn pop(&mut self) -> Option<(u32, u16)> {
+        let next = self.list.get(self.done).map(|&e| (e, self.at as u16));
+        self.done += usize::from(next.is_some());
+        next
     }
 
     /// Begins anew with the cheapest; everything must have been taken out.
@@ -102,12 +115,17 @@ mod tests {
     fn edges_come_out_by_cost_and_a_cost_of_any_size_has_a_bucket() {
         let mut queue = Queue::new();
         let costs = [f64::MAX, 1e-300, 2.0, 0.0, 1.0, f64::INFINITY, 1e-9];
-        for (edge, &cost) in (0..).zip(&costs) {
-            queue.push(queue.bucket(cost), edge);
+        let keys: Vec<u16> = costs.iter().map(|&cost| queue.bucket(cost)).collect();
+        for (edge, &key) in (0..).zip(&keys) {
+            queue.push(key, edge);
         }
-        assert_eq!((queue.first(), queue.count(usize::MAX)), (Some(0), 7));
-        let order: Vec<u32> = std::iter::from_fn(|| queue.pop(usize::MAX)).map(|p| p.0).collect();
-        assert_eq!(order, [1, 3, 6, 4, 2, 0, 5]);
+        let key = |e: u32| if e == 6 { PARKED } else { keys[e as usize] };
+        assert_eq!((queue.first(key), queue.count(DOUBLING)), (Some(0), 2));
+        let mut order = Vec::new();
+        while queue.first(key).is_some() {
+            order.extend(queue.pop().map(|p| p.0));
+        }
+        assert_eq!(order, [1, 3, 4, 2, 0, 5]);
         assert_eq!(queue.bucket(0.0), queue.bucket(f64::INFINITY), "no way back");
         queue.rewind();
         assert_eq!(queue.bucket(0.0), 0);

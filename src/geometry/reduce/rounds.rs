@@ -7,7 +7,7 @@
 use super::attempt::Guards;
 use super::copy::Copy;
 use super::part::Part;
-use super::queue::{DOUBLING, PARKED};
+use super::queue::DOUBLING;
 use super::run::{Account, Run, Step};
 use crate::matching::NONE;
 use crate::{Cancelled, Control};
@@ -25,9 +25,10 @@ pub(super) struct Outcome {
 struct Job<'a> {
     part: Part<'a>,
     run: Run,
-    /// How many faces are to be gone after this round.
-    goal: usize,
-    is_met: bool,
+    /// The first bucket.
+    first: Option<usize>,
+    /// How many faces may go in this round.
+    share: usize,
 }
 
 impl Copy {
@@ -39,14 +40,14 @@ impl Copy {
         keep_log: bool,
         control: &mut Control<'_>,
     ) -> Result<Outcome, Cancelled> {
-        let mut run = Run::new(guards, keep_log);
+        let mut run = Run::new(self.edges.len(), guards, keep_log);
         let cuts = self.cuts();
         let seam = if cuts.len() > 2 { self.seam(&cuts) } else { Vec::new() };
         let removed = if seam.is_empty() {
             run.fill(&mut self.whole());
             0
         } else {
-            self.reduce_parts(&cuts, faces, seam.len(), &mut run, control)?
+            self.reduce_parts(&cuts, faces, seam.len(), guards, &mut run, control)?
         };
         let mut whole = self.whole();
         whole.removed = removed;
@@ -97,6 +98,7 @@ impl Copy {
         cuts: &[usize],
         faces: usize,
         seam: usize,
+        guards: Guards,
         run: &mut Run,
         control: &mut Control<'_>,
     ) -> Result<usize, Cancelled> {
@@ -105,40 +107,33 @@ impl Copy {
         let goal = (faces as f64 * (0.98 - 3.0 * seam as f64 / all.max(1) as f64)).max(0.0) as usize;
         let mut jobs: Vec<Job<'_>> = Vec::new();
         for part in self.parts(cuts) {
-            jobs.push(Job { part, run: run.another(), goal: 0, is_met: false });
+            let run = Run::new(part.edges.len(), guards, run.log.is_some());
+            jobs.push(Job { part, run, first: None, share: 0 });
         }
         each(&mut jobs, |job| job.run.fill(&mut job.part));
         let mut removed = 0;
         loop {
-            let Some(start) = jobs.iter_mut().filter_map(|job| job.run.queue.first()).min() else { break };
+            each(&mut jobs, |job| job.first = job.run.first(&job.part));
+            let Some(start) = jobs.iter().filter_map(|job| job.first).min() else { break };
             let left = goal.saturating_sub(removed);
-            let count = |jobs: &[Job<'_>], end| jobs.iter().map(|j| j.run.queue.count(end)).sum::<usize>();
+            let count = |jobs: &[Job<'_>], end| jobs.iter().map(|job| job.run.count(end)).sum::<usize>();
             let mut end = (start / DOUBLING + 1) * DOUBLING;
             if count(&jobs, end) > left / 4 {
                 // Near the goal in smaller steps.
-                end = end.min(start + (DOUBLING / 16).max(1));
+                end = end.min(start + DOUBLING / 16);
             }
             let waiting = count(&jobs, end);
             if left < 64 || waiting == 0 {
                 break;
             }
             for job in &mut jobs {
-                let share = left as u64 * job.run.queue.count(end) as u64 / waiting as u64;
-                job.goal = job.part.removed + (share as usize).saturating_sub(1);
+                let count = job.run.count(end) as u64;
+                job.share = (left as u64 * count).div_ceil(waiting as u64) as usize;
             }
-            each(&mut jobs, |job| {
-                if job.goal > job.part.removed {
-                    // Without a hook nobody cancels.
-                    let done = job.run.drain(&mut job.part, job.goal, end, &mut Control::none());
-                    job.is_met = done == Ok(true);
-                }
-            });
+            each(&mut jobs, |job| job.run.drain(&mut job.part, job.share, end));
             removed = jobs.iter().map(|job| job.part.removed).sum();
             let share = removed as f64 / faces.min(all).max(1) as f64;
             control.report("collapse", 0.1 + 0.75 * share.min(1.0))?;
-            if jobs.iter().any(|job| job.is_met) {
-                break;
-            }
         }
         jobs.into_iter().for_each(|job| run.add(job.run));
         Ok(removed)
@@ -183,8 +178,8 @@ fn come_together(whole: &mut Part<'_>, run: &mut Run, seam: &[u32], line_weight:
         }
         if edge.ends().iter().any(|&v| is_seam[v as usize]) {
             run.put(whole, e);
-        } else if whole.key(e) != PARKED {
-            run.queue.push(whole.key(e), e);
+        } else {
+            run.keep(whole, e);
         }
     }
 }

@@ -2,13 +2,21 @@
 
 use super::attempt::{Guards, Scratch};
 use super::part::Part;
-use super::queue::{PARKED, Queue};
+use super::queue::{DOUBLING, PARKED, Queue};
 use super::{Refusal, Refusals};
 use crate::{Cancelled, Control};
 
+/// The edges of a cell, whose records and those of their vertices fit into the cache next to a core.
+const CELL: u32 = 1 << 14;
+/// Up to so many cells strictly go by cost.
+const FEW: usize = 12;
+/// How often one in so many faces is removed, progress is told.
+const REPORTS: usize = 64;
+
 /// A reduction under way.
 pub(super) struct Run {
-    pub(super) queue: Queue,
+    /// By cell.
+    queues: Vec<Queue>,
     scratch: Scratch,
     guards: Guards,
     pub(super) account: Account,
@@ -20,8 +28,7 @@ pub(super) struct Run {
 #[derive(Clone, Copy)]
 pub(super) struct Step {
     pub(super) halfedge: u32,
-    /// The vertex that is left, and where it was then, in local units; `None` if it was never moved.
-    pub(super) vertex: u32,
+    /// Where the vertex that is left was then, in local units; `None` if it was never moved.
     pub(super) place: Option<glam::DVec3>,
 }
 
@@ -35,14 +42,16 @@ pub(super) struct Account {
 }
 
 impl Run {
-    pub(super) fn new(guards: Guards, keep_log: bool) -> Self {
-        let log = keep_log.then(Vec::new);
-        Self { queue: Queue::new(), scratch: Scratch::default(), guards, account: Account::default(), log }
-    }
-
-    /// Of the same kind, with nothing done.
-    pub(super) fn another(&self) -> Self {
-        Self::new(self.guards, self.log.is_some())
+    /// For a part of so many edges.
+    pub(super) fn new(edges: usize, guards: Guards, keep_log: bool) -> Self {
+        let cells = (edges as u64).div_ceil(CELL.into()).max(1);
+        Self {
+            queues: (0..cells).map(|_| Queue::new()).collect(),
+            scratch: Scratch::default(),
+            guards,
+            account: Account::default(),
+            log: keep_log.then(Vec::new),
+        }
     }
 
     /// Counts what another has done elsewhere before.
@@ -64,7 +73,7 @@ impl Run {
     ) -> Result<bool, Cancelled> {
         let mut before = is_full.then_some(self.account.collapses);
         loop {
-            if self.drain(part, faces, usize::MAX, control)? {
+            if self.empty(part, faces, control)? {
                 return Ok(true);
             }
             // What was refused may have become legal through changes further away: only a sweep in which nothing
@@ -73,9 +82,54 @@ impl Run {
                 return Ok(false);
             }
             before = Some(self.account.collapses);
-            self.queue.rewind();
+            self.queues.iter_mut().for_each(Queue::rewind);
             self.account.is_bounded = false;
             self.fill(part);
+        }
+    }
+
+    /// Collapses until `faces` are gone or the queue is empty. Whether they are gone.
+    fn empty(
+        &mut self,
+        part: &mut Part<'_>,
+        faces: usize,
+        control: &mut Control<'_>,
+    ) -> Result<bool, Cancelled> {
+        let total = faces.min(part.edges.len()).max(1);
+        let mut told = part.removed;
+        while part.removed < faces {
+            let Some(start) = self.first(part) else { return Ok(false) };
+            let (left, all) = (faces - part.removed, (start / DOUBLING + 1) * DOUBLING);
+            let is_far = self.queues.len() > FEW && self.count(all) < left / 4;
+            self.drain(part, left, if is_far { all } else { start + 1 });
+            if part.removed - told > total / REPORTS {
+                told = part.removed;
+                control.report("collapse", 0.1 + 0.75 * (told as f64 / total as f64).min(1.0))?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// The first bucket that has entries.
+    pub(super) fn first(&mut self, part: &Part<'_>) -> Option<usize> {
+        self.queues.iter_mut().filter_map(|queue| queue.first(|e| part.key(e))).min()
+    }
+
+    /// How many entries there are before `end`, which must be within the factor of two of the first.
+    pub(super) fn count(&self, end: usize) -> usize {
+        self.queues.iter().map(|queue| queue.count(end)).sum()
+    }
+
+    #[inline]
+    fn queue(&mut self, part: &Part<'_>, e: u32) -> &mut Queue {
+        &mut self.queues[((e - part.first_edge) / CELL) as usize]
+    }
+
+    /// Puts an edge back into its bucket.
+    pub(super) fn keep(&mut self, part: &Part<'_>, e: u32) {
+        let key = part.key(e);
+        if key != PARKED {
+            self.queue(part, e).push(key, e);
         }
     }
 
@@ -91,16 +145,20 @@ impl Run {
     /// Puts an edge where its cost belongs.
     #[inline]
     pub(super) fn put(&mut self, part: &mut Part<'_>, e: u32) {
-        let bucket = match part.candidate(e) {
-            Ok(candidate) => self.queue.bucket(candidate.cost),
-            Err(refusal) => self.refuse(refusal),
-        };
+        match part.candidate(e) {
+            Ok(candidate) => self.move_to(part, e, candidate.cost),
+            Err(refusal) => *part.key_mut(e) = self.refuse(refusal),
+        }
+    }
+
+    #[inline]
+    fn move_to(&mut self, part: &mut Part<'_>, e: u32, cost: f64) {
+        let queue = self.queue(part, e);
+        let bucket = queue.bucket(cost);
         let key = part.key_mut(e);
         if *key != bucket {
             *key = bucket;
-            if bucket != PARKED {
-                self.queue.push(bucket, e);
-            }
+            queue.push(bucket, e);
         }
     }
 
@@ -111,44 +169,45 @@ impl Run {
         PARKED
     }
 
-    /// Collapses until `faces` are gone or the buckets before `end` are empty. Whether they are gone.
-    pub(super) fn drain(
-        &mut self,
-        part: &mut Part<'_>,
-        faces: usize,
-        end: usize,
-        control: &mut Control<'_>,
-    ) -> Result<bool, Cancelled> {
-        let total = faces.min(part.edges.len()).max(1);
-        let mut taken = 0u32;
-        while part.removed < faces {
-            if self.queue.is_at_batch(32) {
-                touch(part, self.queue.ahead(32), self.queue.at());
-            }
-            let Some((e, bucket)) = self.queue.pop(end) else { return Ok(false) };
-            taken += 1;
-            if taken.is_multiple_of(1 << 15) {
-                let share = (part.removed as f64 / total as f64).min(1.0);
-                control.report("collapse", 0.1 + 0.75 * share)?;
-            }
-            if part.key(e) != bucket {
-                continue;
-            }
-            let candidate = match part.candidate(e) {
-                // It has become dearer since: the neighbours' faces have moved.
-                Ok(candidate) if self.queue.bucket(candidate.cost) > bucket => {
-                    self.put(part, e);
-                    continue;
+    /// Empties the buckets before `end`, cell by cell, until about `faces` more are gone: where that is less than there is,
+    /// each cell gives its share.
+    pub(super) fn drain(&mut self, part: &mut Part<'_>, faces: usize, end: usize) {
+        let goal = part.removed + faces;
+        let waiting = self.count(end).max(1);
+        for cell in 0..self.queues.len() {
+            let count = self.queues[cell].count(end);
+            let share = (faces as u64 * count as u64).div_ceil(waiting as u64) as usize;
+            let goal = goal.min(part.removed + share);
+            while part.removed < goal
+                && self.queues[cell].first(|e| part.key(e)).is_some_and(|first| first < end)
+            {
+                if let Some(entries) = self.queues[cell].begun() {
+                    touch(part, entries);
                 }
-                other => other,
-            };
-            *part.key_mut(e) = PARKED;
-            match candidate.and_then(|c| part.attempt(e, c, self.guards, &mut self.scratch)) {
-                Err(refusal) => _ = self.refuse(refusal),
-                Ok(halfedge) => self.follow(part, halfedge),
+                if let Some((e, bucket)) = self.queues[cell].pop() {
+                    self.take(part, e, bucket);
+                }
             }
         }
-        Ok(true)
+    }
+
+    #[inline]
+    fn take(&mut self, part: &mut Part<'_>, e: u32, bucket: u16) {
+        if part.key(e) != bucket {
+            return;
+        }
+        let candidate = match part.candidate(e) {
+            // It has become dearer since: the neighbours' faces have moved.
+            Ok(candidate) if self.queue(part, e).bucket(candidate.cost) > bucket => {
+                return self.move_to(part, e, candidate.cost);
+            }
+            other => other,
+        };
+        *part.key_mut(e) = PARKED;
+        match candidate.and_then(|c| part.attempt(e, c, self.guards, &mut self.scratch)) {
+            Err(refusal) => _ = self.refuse(refusal),
+            Ok(halfedge) => self.follow(part, halfedge),
+        }
     }
 
     /// After a collapse, while all of this is at hand.
@@ -156,9 +215,8 @@ impl Run {
     fn follow(&mut self, part: &mut Part<'_>, halfedge: u32) {
         self.account.collapses += 1;
         if let Some(log) = &mut self.log {
-            let vertex = part.origin(halfedge ^ 1);
-            let target = part.spot(vertex);
-            log.push(Step { halfedge, vertex, place: target.is_moved().then_some(target.position) });
+            let target = part.spot(part.origin(halfedge ^ 1));
+            log.push(Step { halfedge, place: target.is_moved().then_some(target.position) });
         }
         for i in 1..self.scratch.goes.spokes.len() {
             self.put_again(part, self.scratch.goes.spokes[i] >> 1);
@@ -203,25 +261,17 @@ impl std::ops::AddAssign for Refusals {
     }
 }
 
-/// Brings what the next collapses will look at into the cache: loads that do not wait for one another.
-#[inline]
-fn touch(part: &Part<'_>, edges: &[u32], bucket: u16) {
+/// Brings what the next collapses will look at first into the cache, by loads that do not wait for one another.
+fn touch(part: &Part<'_>, edges: &[u32]) {
     let mut sum = 0u64;
-    for &e in edges {
-        if part.key(e) != bucket {
-            continue;
+    for batch in edges.chunks(32) {
+        let mut ends = [0; 64];
+        for (ends, &e) in ends.chunks_exact_mut(2).zip(batch) {
+            ends.copy_from_slice(&part.edge(e).ends());
         }
-        for first in [2 * e, 2 * e + 1] {
-            let mut h = first;
-            for _ in 0..12 {
-                let (v, after) = part.around(h);
-                sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
-                sum = sum.wrapping_add(part.fan(v).weight().to_bits());
-                h = after;
-                if h == first {
-                    break;
-                }
-            }
+        for &v in &ends[..2 * batch.len()] {
+            sum = sum.wrapping_add(part.spot(v).position.x.to_bits());
+            sum = sum.wrapping_add(part.fan(v).weight().to_bits());
         }
     }
     std::hint::black_box(sum);

@@ -45,7 +45,7 @@ impl Copy {
 impl Mesh {
     /// Does the collapses again, one by one, so that columns, checkpoints and listeners see them.
     pub(super) fn replay(&mut self, copy: &Copy, log: Vec<Step>) {
-        for Step { halfedge, place, .. } in log {
+        for Step { halfedge, place } in log {
             let halfedge = copy.slot(halfedge);
             let stays = self.origin[halfedge as usize ^ 1] as usize;
             let position = place.map_or(self.positions[stays], |p| copy.frame.global(p));
