@@ -125,6 +125,8 @@ named! {
         Debris = "debris",
         /// A hole that was filled.
         FilledHole = "filled_hole",
+        /// Holes filled ear by ear, with little area but not the least, as there were so many; one stands for all.
+        HastyFillers = "hasty_fillers",
         /// A hole with islands, or several loops around one hole; left.
         HoleWithIslands = "hole_with_islands",
         /// A hole whose every filler would double an edge; left.
@@ -148,6 +150,9 @@ named! {
         OpenPart = "open_part",
         /// Two faces that pass through each other. Left.
         SelfIntersection = "self_intersection",
+        /// Faces that were not held against all others, as so many pass through each other or lie in one place; one stands for
+        /// all.
+        UnsearchedFaces = "unsearched_faces",
     }
 }
 

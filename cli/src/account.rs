@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 const SHOWN: usize = 3;
 
 /// What is said of things that were found and left.
-const LEFT: [Kind; 11] = [
+const LEFT: [Kind; 12] = [
     Kind::HoleWithIslands,
     Kind::HemmedInHole,
     Kind::OutsideOfSheet,
@@ -21,6 +21,7 @@ const LEFT: [Kind; 11] = [
     Kind::OpenPart,
     Kind::CrossingShell,
     Kind::SelfIntersection,
+    Kind::UnsearchedFaces,
     Kind::SharpEdge,
 ];
 
@@ -71,6 +72,12 @@ fn kind(account: &Account, kind: Kind) -> Vec<String> {
     let all = match kind {
         Kind::SelfIntersection => {
             account.steps.iter().find(|s| s.step == Step::FindIntersections).map_or(count, |s| s.changed)
+        }
+        // One stands for all.
+        Kind::UnsearchedFaces | Kind::HastyFillers => {
+            return of_kind()
+                .map(|r| format!("{} {what}", counted(r.extent.map_or(1, |e| e.elements), noun)))
+                .collect();
         }
         _ => count,
     };

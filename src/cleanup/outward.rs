@@ -28,10 +28,9 @@ pub fn turn_outward(
     mesh: &mut Mesh,
     control: Control<'_>,
 ) -> Result<Outcome<Vec<OutwardPart<FaceKey>>>, CleanError> {
-    // No open part is as sure as that.
-    let options = OutwardOptions { min_confidence: 1.0, control };
+    let options = OutwardOptions { control, ..Default::default() };
     // The confidence makes sense, so this is the only reason.
-    let found = mesh.orient_outward(options).map_err(|_| CleanError::Cancelled(Cancelled))?;
+    let found = mesh.orient_parts_outward(options, false).map_err(|_| CleanError::Cancelled(Cancelled))?;
     let mut outcome = unchanged(mesh, (), Step::TurnOutward);
     if found.iter().any(|p| p.reversed || p.crosses) {
         // Reversing renumbers nothing.
