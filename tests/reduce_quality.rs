@@ -27,7 +27,7 @@ fn spread(mesh: &IndexedMesh) -> (Vec<DVec3>, usize) {
         let [a, b, c] = triangle(f);
         sums.push(sums[sums.len() - 1] + (b - a).cross(c - a).length());
     }
-    let count = 30_000;
+    let count = 20_000;
     let (mut noise, mut f) = (Noise(5), 0);
     let mut points = Vec::new();
     for i in 0..count {
