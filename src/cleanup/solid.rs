@@ -51,20 +51,24 @@ pub(super) fn solidify(
     debris: Option<usize>,
     control: &mut Control<'_>,
 ) -> Result<(), CleanError> {
-    // What one step does may leave work for one before it; seldom, and hardly ever twice.
+    // What one step does may leave work for one before it; seldom, and hardly ever twice. Turning changes in which order
+    // corners are looked at.
     for round in 0..MOST_ROUNDS {
         let share = 1.0 - 0.5f64.powi(round);
-        let is_changed = stage.round(tolerance, debris, &mut control.part(0.8 * share, 0.4 + 0.4 * share))?;
-        if !is_changed {
+        let mut own = control.part(0.8 * share, 0.4 + 0.4 * share);
+        let is_changed = stage.round(tolerance, debris, &mut own)?;
+        if is_changed && round + 1 < MOST_ROUNDS {
+            continue;
+        }
+        own.report("turn outward", 1.0)?;
+        let turned = turn_outward(&mut stage.mesh, own.part(1.0, 1.0))?;
+        if stage.join(turned).iter().all(|part| !part.reversed) {
             break;
         }
     }
-    control.report("turn outward", 0.8)?;
-    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.85))?;
-    stage.join(turned);
     let max_tests = MOST_TESTS + 64 * stage.mesh.face_count();
-    let control_part = control.part(0.85, 0.97);
-    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, max_tests, control: control_part };
+    let hook = control.part(0.85, 0.97);
+    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, max_tests, control: hook };
     let found = find_intersections(&stage.mesh, options)?;
     stage.join(found);
     control.report("find open parts", 0.97)?;
