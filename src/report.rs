@@ -125,6 +125,8 @@ named! {
         Debris = "debris",
         /// A hole that was filled.
         FilledHole = "filled_hole",
+        /// Holes filled ear by ear, with little area but not the least, as there were so many; one stands for all.
+        HastyFillers = "hasty_fillers",
         /// A hole with islands, or several loops around one hole; left.
         HoleWithIslands = "hole_with_islands",
         /// A hole whose every filler would double an edge; left.
@@ -141,12 +143,16 @@ named! {
         CrossingShell = "crossing_shell",
         /// An open part that is a sheet: to close it, a filler of about its own size would be needed. Left.
         OpenSheet = "open_sheet",
-        /// An open part that was cut because it cannot be oriented. Left.
+        /// An open part of which two boundary edges lie at one place and run the same way: so it is where a surface that
+        /// cannot be oriented was cut. Left.
         NotOrientable = "not_orientable",
         /// An open part with holes that could not be filled. Left.
         OpenPart = "open_part",
         /// Two faces that pass through each other. Left.
         SelfIntersection = "self_intersection",
+        /// Faces that were not held against all others, as so many pass through each other or lie in one place; one stands for
+        /// all.
+        UnsearchedFaces = "unsearched_faces",
     }
 }
 

@@ -13,7 +13,7 @@ fn soups() -> impl Strategy<Value = Soup> {
         3 => prop::collection::vec(0u8..12, 4..7),
         1 => prop::collection::vec(any::<u8>(), 0..8),
     ];
-    (prop::collection::vec(point, 3..13), prop::collection::vec(face, 0..28), 0u8..4)
+    (prop::collection::vec(point, 3..13), prop::collection::vec(face, 0..28), 0u8..16)
         .prop_map(|(points, faces, weld)| Soup { points, faces, weld })
 }
 

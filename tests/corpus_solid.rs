@@ -32,8 +32,8 @@ fn cleaned(soup: &PolygonSoup, profile: Profile, path: &str) -> Came {
     assert_eq!(mesh.validate(), Ok(()), "{path}");
 
     // Every face of the input is kept, changed, or dropped for a reason.
-    let account = Account::new(soup, (profile, weld), &pool, &report, &maps).expect("as before");
-    let tally = account.faces;
+    let account = Account::new(soup, (profile, weld), &pool, report.clone(), &maps).expect("as before");
+    let tally = account.face_tally;
     assert_eq!(tally.kept + tally.changed + tally.dropped, soup.polygons.len(), "{path}: {tally:?}");
     let named: HashSet<Element> = report.records.iter().map(|r| r.element).collect();
     for f in (0..soup.polygons.len()).filter(|&f| maps.faces.new_of(f).is_empty()) {
@@ -60,7 +60,7 @@ fn cleaned(soup: &PolygonSoup, profile: Profile, path: &str) -> Came {
 fn line(table: &mut String, row: &Row, soup: &PolygonSoup, preserve: &Came, solid: &Came) {
     let count = |kind| solid.account.counts.get(&kind).copied().unwrap_or(0);
     let found = |step| solid.account.steps.iter().find(|s| s.step == step).map_or(0, |s| s.changed);
-    let f = solid.account.faces;
+    let f = solid.account.face_tally;
     let is = |yes: bool| if yes { "yes" } else { "no" };
     let open = count(Kind::OpenPart) + count(Kind::OpenSheet) + count(Kind::NotOrientable);
     writeln!(

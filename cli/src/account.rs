@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 const SHOWN: usize = 3;
 
 /// What is said of things that were found and left.
-const LEFT: [Kind; 11] = [
+const LEFT: [Kind; 12] = [
     Kind::HoleWithIslands,
     Kind::HemmedInHole,
     Kind::OutsideOfSheet,
@@ -21,6 +21,7 @@ const LEFT: [Kind; 11] = [
     Kind::OpenPart,
     Kind::CrossingShell,
     Kind::SelfIntersection,
+    Kind::UnsearchedFaces,
     Kind::SharpEdge,
 ];
 
@@ -60,12 +61,23 @@ fn merged(account: &Account) -> Option<String> {
 /// How many of a kind, and where the first few are.
 fn kind(account: &Account, kind: Kind) -> Vec<String> {
     let count = account.counts.get(&kind).copied().unwrap_or(0);
+    if kind == Kind::MergedVertex {
+        // Told with the weld.
+        return Vec::new();
+    }
     let (noun, what) = text::described(kind);
+    let what = what.strip_suffix(", left").unwrap_or(what);
     let of_kind = || account.defects.iter().filter(|r| r.kind == kind);
     // Of what is listed in part, the step knows how many there are.
     let all = match kind {
         Kind::SelfIntersection => {
             account.steps.iter().find(|s| s.step == Step::FindIntersections).map_or(count, |s| s.changed)
+        }
+        // One stands for all.
+        Kind::UnsearchedFaces | Kind::HastyFillers => {
+            return of_kind()
+                .map(|r| format!("{} {what}", counted(r.extent.map_or(1, |e| e.elements), noun)))
+                .collect();
         }
         _ => count,
     };
@@ -111,7 +123,7 @@ fn verdict(account: &Account) -> String {
 }
 
 fn faces(account: &Account) -> String {
-    let f = &account.faces;
+    let f = &account.face_tally;
     let mut parts = vec![format!("{} kept", f.kept)];
     let more = [(f.changed, "changed"), (f.dropped, "dropped"), (f.added, "new")];
     parts.extend(more.iter().filter(|m| m.0 > 0).map(|(count, what)| format!("{count} {what}")));

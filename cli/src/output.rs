@@ -74,9 +74,12 @@ pub(crate) fn stage_json(path: &Path, value: &impl serde::Serialize) -> Result<S
     stage(path, write).map(|s| s.0).map_err(|error| failed(path, &error))
 }
 
-/// Stages a text file.
-pub(crate) fn stage_text(path: &Path, text: &str) -> Result<Staged, Failure> {
-    stage(path, |sink| sink.write_all(text.as_bytes())).map(|s| s.0).map_err(|error| failed(path, &error))
+/// Stages what is written.
+pub(crate) fn stage_with(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+) -> Result<Staged, Failure> {
+    stage(path, write).map(|s| s.0).map_err(|error| failed(path, &error))
 }
 
 fn failed(path: &Path, error: &std::io::Error) -> Failure {

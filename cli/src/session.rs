@@ -3,7 +3,6 @@
 use meshwright::io::{Place, ReadError};
 use serde::Serialize;
 use serde_json::json;
-use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -24,7 +23,7 @@ pub(crate) struct Answer {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fields {
     /// What stands between the braces.
-    text: String,
+    text: Vec<u8>,
     /// Nobody asked for JSON: keeps nothing.
     is_unwanted: bool,
 }
@@ -32,41 +31,54 @@ pub(crate) struct Fields {
 impl Fields {
     /// The same with one more field.
     pub(crate) fn with(self, name: &str, value: &impl Serialize) -> Self {
-        if self.is_unwanted { self } else { self.with_text(name, &in_json(value)) }
+        if self.is_unwanted { self } else { self.named(name, |text| put(text, value)) }
     }
 
     /// The same with an object as one more field.
     pub(crate) fn with_object(self, name: &str, object: &Self) -> Self {
-        if self.is_unwanted { self } else { self.with_text(name, &format!("{{{}}}", object.text)) }
+        let braced = |text: &mut Vec<u8>| {
+            text.push(b'{');
+            text.extend_from_slice(&object.text);
+            text.push(b'}');
+        };
+        if self.is_unwanted { self } else { self.named(name, braced) }
     }
 
     /// The same with all fields of something that is an object in JSON.
     pub(crate) fn with_all(mut self, value: &impl Serialize) -> Self {
         if !self.is_unwanted {
-            let object = in_json(value);
             self.separate();
-            self.text += object.strip_prefix('{').and_then(|o| o.strip_suffix('}')).unwrap_or_default();
+            let from = self.text.len();
+            put(&mut self.text, value);
+            if self.text.get(from) == Some(&b'{') {
+                self.text.remove(from);
+                self.text.pop();
+            }
         }
         self
     }
 
-    fn with_text(mut self, name: &str, json: &str) -> Self {
+    fn named(mut self, name: &str, write: impl FnOnce(&mut Vec<u8>)) -> Self {
         self.separate();
-        // Writing to a string does not fail.
-        let _ = write!(self.text, "\"{name}\":{json}");
+        self.text.extend_from_slice(format!("\"{name}\":").as_bytes());
+        write(&mut self.text);
         self
     }
 
     fn separate(&mut self) {
         if !self.text.is_empty() {
-            self.text.push(',');
+            self.text.push(b',');
         }
     }
 }
 
-fn in_json(value: &impl Serialize) -> String {
-    // Fails for maps whose keys are no text, and there are none.
-    serde_json::to_string(value).unwrap_or_else(|_| "null".to_owned())
+fn put(text: &mut Vec<u8>, value: &impl Serialize) {
+    let from = text.len();
+    if serde_json::to_writer(&mut *text, value).is_err() {
+        // Fails for maps whose keys are no text, and there are none.
+        text.truncate(from);
+        text.extend_from_slice(b"null");
+    }
 }
 
 /// Why there is no answer.
@@ -136,15 +148,20 @@ impl Session {
 
     /// No fields yet; what is added is kept if it is to be printed or, as `also` says, wanted for something else.
     pub(crate) fn fields(&self, also: bool) -> Fields {
-        Fields { text: String::new(), is_unwanted: !self.is_json && !also }
+        Fields { text: Vec::new(), is_unwanted: !self.is_json && !also }
     }
 
-    /// The JSON object of an answer in one line, as `--report` writes it too.
-    pub(crate) fn object(&self, json: Fields) -> String {
+    /// Writes the JSON object of an answer in one line, as `--report` has it too.
+    pub(crate) fn write_object(&self, json: &Fields, sink: &mut impl Write) -> std::io::Result<()> {
         let [read, build, run, write] = self.spent;
         let timings = json!({ "read": read, "build": build, "run": run, "write": write });
-        let json = json.with("timings_ms", &timings).with("peak_rss_bytes", &peak_rss());
-        format!("{{{}}}\n", json.text)
+        let last = Fields::default().with("timings_ms", &timings).with("peak_rss_bytes", &peak_rss());
+        sink.write_all(b"{")?;
+        // Written as it is: a million records are not copied.
+        sink.write_all(&json.text)?;
+        sink.write_all(if json.text.is_empty() { b"" } else { b"," })?;
+        sink.write_all(&last.text)?;
+        sink.write_all(b"}\n")
     }
 
     /// Prints the result and gives the exit code.
@@ -168,9 +185,10 @@ impl Session {
                 (code, json.with("error", &error), String::new())
             }
         };
-        let printed = if self.is_json { self.object(json) } else { text };
         let mut out = std::io::stdout().lock();
-        match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
+        let printed =
+            if self.is_json { self.write_object(&json, &mut out) } else { out.write_all(text.as_bytes()) };
+        match printed.and_then(|()| out.flush()) {
             // Nobody reads on: `meshwright ... | head`.
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
                 self.say(&format!("error: cannot print: {error}"));

@@ -93,23 +93,27 @@ pub(crate) fn described(kind: Kind) -> (&'static str, &'static str) {
         Kind::TJunction => ("vertex", "within another face's edge, joined"),
         Kind::Fin => ("face", "of fins, dropped"),
         Kind::Needle => ("face", "with an edge of no length, collapsed"),
-        Kind::Cap => ("face", "without height, merged into its neighbour"),
+        Kind::Cap => ("face", "without height, merged into a neighbour"),
         Kind::FlatFace => ("face", "without height, cut and resolved"),
         Kind::AbsorbedFace => ("face", "taken over by its neighbours"),
         Kind::LeftSliver => ("face", "without height that could not be resolved, left"),
         Kind::Debris => ("face", "of small parts, dropped"),
         Kind::FilledHole => ("hole", "filled"),
+        Kind::HastyFillers => ("filler", "of little area but not the least, as there were so many"),
         Kind::HoleWithIslands => ("hole", "with islands, left"),
         Kind::HemmedInHole => ("hole", "that no filler fits, left"),
-        Kind::OutsideOfSheet => ("hole", "as large as its part, left"),
+        Kind::OutsideOfSheet => ("hole", "as large as the part around it, left"),
         Kind::LongHole => ("hole", "too long, left"),
         Kind::IsolatedVertex => ("vertex", "without a face, dropped"),
         Kind::TurnedShell => ("shell", "inside out, turned"),
         Kind::CrossingShell => ("shell", "crossing another"),
         Kind::OpenSheet => ("sheet", "that cannot become a solid, left"),
-        Kind::NotOrientable => ("part", "that cannot be oriented, left"),
+        Kind::NotOrientable => ("part", "whose edges meet the wrong way round (not orientable), left"),
         Kind::OpenPart => ("part", "with holes that could not be filled, left"),
         Kind::SelfIntersection => ("pair", "of faces that pass through each other, left"),
+        Kind::UnsearchedFaces => {
+            ("face", "not held against all others: there may be more that pass through each other")
+        }
         other => ("element", other.as_str()),
     }
 }

@@ -28,7 +28,7 @@ pub struct Account {
     /// is told by records.
     pub moved: f64,
     /// What became of the input's faces.
-    pub faces: FaceTally,
+    pub face_tally: FaceTally,
     /// How many records there are of each kind; empty when nothing was done.
     pub counts: BTreeMap<Kind, usize>,
     /// The steps that ran, in order.
@@ -89,16 +89,16 @@ impl Account {
     /// let soup = PolygonSoup::new(points, Polygons::from_triangles(&faces));
     /// let cleaned = clean_indexed(&soup, CleanOptions::solid())?;
     /// let account =
-    ///     Account::new(&soup, (Profile::Solid, Weld::Auto), &cleaned.value, &cleaned.report, &cleaned.maps)?;
+    ///     Account::new(&soup, (Profile::Solid, Weld::Auto), &cleaned.value, cleaned.report, &cleaned.maps)?;
     /// assert!(account.solid);
-    /// assert_eq!((account.faces.input, account.faces.kept, account.faces.dropped), (5, 4, 1));
+    /// assert_eq!((account.face_tally.input, account.face_tally.kept, account.face_tally.dropped), (5, 4, 1));
     /// # Ok::<(), meshwright::cleanup::CleanError>(())
     /// ```
     pub fn new(
         soup: &PolygonSoup,
         (profile, weld): (Profile, Weld),
         result: &IndexedMesh,
-        report: &Report,
+        report: Report,
         maps: &Maps,
     ) -> Result<Self, CleanError> {
         let before = inspect(soup, weld)?;
@@ -111,14 +111,14 @@ impl Account {
             solid: after.closed && after.manifold && after.oriented,
             tolerance: weld.and_then(|s| s.tolerance),
             moved: report.steps.iter().map(|s| s.moved).sum(),
-            faces: FaceTally::new(soup, result, maps),
+            face_tally: FaceTally::new(soup, result, maps),
             counts: report.counts(),
-            steps: report.steps.clone(),
-            not_carried: report.not_carried.clone(),
-            lost_values: lost(report),
+            lost_values: lost(&report),
+            steps: report.steps,
+            not_carried: report.not_carried,
             before,
             after,
-            defects: report.records.clone(),
+            defects: report.records,
         })
     }
 }

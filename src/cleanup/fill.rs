@@ -2,10 +2,11 @@
 
 use super::step::{Before, unchanged};
 use crate::report::{Kind, Outcome, Record, Step, StepSummary};
-use crate::{FillHolesError, FillHolesOptions, FilledHoles, HalfedgeKey, HoleRefusal, Mesh};
+use crate::{FillHolesError, FillHolesOptions, FillMethod, FilledHoles, HalfedgeKey, HoleRefusal, Mesh};
 
 /// Fills holes: [`Mesh::fill_holes`] with an account. A record for each hole, filled or left, with its number of edges and
-/// the area of what fills it; it names the vertex of the loop that comes first, in the numbers of the mesh before.
+/// the area of what fills it; it names the vertex of the loop that comes first, in the numbers of the mesh before. If there
+/// were too many for the least area ([`exact_cost`](FillHolesOptions::exact_cost)), one record more tells how many.
 ///
 /// # Errors
 /// [`FillHolesError`]; nothing has changed then.
@@ -36,6 +37,7 @@ pub(super) fn fill_holes_of(
     is_wanted: impl Fn(u32) -> bool,
 ) -> Result<Outcome<FilledHoles>, FillHolesError> {
     let before = Before::of(mesh);
+    let exact_edges = options.exact_edges;
     let found = mesh.fill_holes_beside(options, is_wanted)?;
     if found.filled.is_empty() && found.refused.is_empty() {
         return Ok(unchanged(mesh, found, Step::FillHoles));
@@ -58,7 +60,13 @@ pub(super) fn fill_holes_of(
         let record = Record::new(Step::FillHoles, kind, at(hole.halfedge), Some(hole.place));
         record.sized(hole.vertices.len(), 0.0)
     });
-    let records = filled.chain(left).collect();
+    let mut hasty =
+        found.filled.iter().filter(|hole| hole.method == FillMethod::Ears && hole.edges <= exact_edges);
+    let hasty = hasty.next().map(|first| {
+        let record = Record::new(Step::FillHoles, Kind::HastyFillers, at(first.halfedge), Some(first.place));
+        record.sized(1 + hasty.count(), 0.0)
+    });
+    let records = filled.chain(left).chain(hasty).collect();
     let summary = StepSummary::new(Step::FillHoles, found.filled.len());
     Ok(before.outcome(mesh, found, summary, records))
 }

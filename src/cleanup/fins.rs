@@ -39,8 +39,11 @@ pub fn drop_fins(mesh: &mut Mesh, tolerance: f64) -> Result<Outcome<usize>, Clea
     if tolerance.is_nan() || tolerance < 0.0 || tolerance.is_infinite() {
         return Err(CleanError::BadTolerance(tolerance));
     }
+    if mesh.is_closed() {
+        return Ok(unchanged(mesh, 0, Step::DropFins));
+    }
     let parts = Parts::of(mesh);
-    if parts.open().next().is_none() || parts.len() == 1 {
+    if parts.len() == 1 {
         return Ok(unchanged(mesh, 0, Step::DropFins));
     }
     let hosts = hosts(mesh, &parts, tolerance)?;

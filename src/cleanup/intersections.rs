@@ -1,11 +1,13 @@
 //! Faces that pass through each other, with an account.
 
-use super::step::{Before, unchanged};
+use super::step::{Before, middle, unchanged};
 use crate::report::{Element, Kind, Outcome, Record, Step, StepSummary};
 use crate::{Cancelled, Contact, Mesh, SelfIntersectionOptions, SelfIntersections};
 
 /// Looks for faces that cross or overlap: [`Mesh::self_intersections`] with an account, which changes nothing. A record for
-/// each pair that is listed; pairs that only touch have none. [`StepSummary::changed`] counts all, listed or not.
+/// each pair that is listed; pairs that only touch have none. [`StepSummary::changed`] counts all, listed or not. If the search
+/// ended before all was looked at ([`max_tests`](SelfIntersectionOptions::max_tests)), a record says so, with the number of
+/// faces that were not held against all others.
 ///
 /// # Errors
 /// [`Cancelled`] when the hook says so.
@@ -28,13 +30,19 @@ pub fn find_intersections(
     let found = mesh.self_intersections(options)?;
     let count = found.crossings + found.overlaps;
     let mut records = Vec::new();
-    if count > 0 {
+    if count > 0 || found.unsearched > 0 {
         let before = Before::of(mesh);
         for pair in found.pairs.iter().filter(|pair| pair.contact != Contact::Touch) {
             if let [Some(Element::Face(a)), Some(Element::Face(b))] = pair.faces.map(|f| before.face_of(f)) {
                 let element = Element::Faces([a.min(b), a.max(b)]);
                 records.push(Record::new(step, Kind::SelfIntersection, element, Some(pair.place)));
             }
+        }
+        if let Some((slot, element)) =
+            found.first_unsearched.and_then(|f| Some((mesh.face_slot(f)?, before.face_of(f)?)))
+        {
+            let record = Record::new(step, Kind::UnsearchedFaces, element, Some(middle(mesh, slot)));
+            records.push(record.sized(found.unsearched, 0.0));
         }
     }
     let mut outcome = unchanged(mesh, found, step);

@@ -122,6 +122,15 @@ pub enum CleanError {
 /// more of them paired, so that closed shells stay closed; windings unified again; parts that cannot be oriented cut
 /// open; vertices split so that each has one fan. A soup without defects comes out as it is, with an empty record.
 ///
+/// With [`Profile::Solid`], cracks and T-junctions are [stitched](stitch()) after duplicates are dropped, and more steps
+/// follow on the mesh, until none of them changes anything: [fins](drop_fins) dropped, [slivers](resolve_slivers) resolved,
+/// [debris](drop_debris) dropped if asked for, [holes](fill_holes) filled, [vertices without a face](drop_isolated)
+/// dropped; then shells [turned outward](turn_outward), cavities inward, and [faces that pass through each
+/// other](find_intersections) looked for. A part that cannot become a solid stays as it is but for the steps of `preserve`,
+/// stitching and slivers, and is named by a record: a sheet (to close it would take a filler of three quarters of its own
+/// area), a strip that cannot be oriented, a part with a hole that cannot be filled. Where there is no such record, the
+/// result is closed, manifold, oriented and outward. Two passes come to the same as one.
+///
 /// Vertices keep the soup's order (the lowest of those merged counts), and so do faces; what a split adds comes last.
 /// Splits leave coincident vertices: clean the result with [`Weld::None`], and nothing changes.
 ///
@@ -131,7 +140,7 @@ pub enum CleanError {
 /// it then faces. What lies in the middle of a parted edge is the mean of its ends. Values that are not finite are left
 /// out. [`Report::not_carried`] names the attributes that the result does not have, [`Report::lost_values`] the single values.
 ///
-/// O(n log n) in the corners at worst, linear without defects.
+/// O(n log n) in the corners at worst, linear without defects; holes of up to 500 edges take the cube of that.
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
@@ -146,6 +155,13 @@ pub enum CleanError {
 /// assert_eq!(cleaned.value.vertex_count(), 4);
 /// assert_eq!(cleaned.report.count(Kind::FlippedFace), 1);
 /// assert_eq!(cleaned.maps.vertices.new_of(3), &[1]);
+///
+/// // A tetrahedron without its bottom, inside out.
+/// let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let soup = PolygonSoup::new(points, Polygons::from_triangles(&[[0, 3, 1], [1, 3, 2], [2, 3, 0]]));
+/// let solid = clean(&soup, CleanOptions::solid())?;
+/// assert_eq!(solid.report.count(Kind::FilledHole), 1);
+/// assert!(solid.value.closed().is_ok_and(|closed| closed.volume() > 0.0));
 /// # Ok::<(), meshwright::cleanup::CleanError>(())
 /// ```
 pub fn clean(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {

@@ -60,11 +60,11 @@ fn twisted(mesh: &Mesh, parts: &Parts) -> Result<Vec<bool>, CleanError> {
 
 /// Names the parts that are still open, each by its first face.
 pub(super) fn name_open(mesh: &Mesh) -> Result<Outcome<usize>, CleanError> {
-    let parts = Parts::of(mesh);
     let step = Step::FindOpenParts;
-    if parts.open().next().is_none() {
+    if mesh.is_closed() {
         return Ok(unchanged(mesh, 0, step));
     }
+    let parts = Parts::of(mesh);
     let (before, areas) = (Before::of(mesh), Areas::of(mesh));
     let why = hopeless(mesh, &parts)?;
     let record = |part: usize| {

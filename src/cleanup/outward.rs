@@ -28,14 +28,13 @@ pub fn turn_outward(
     mesh: &mut Mesh,
     control: Control<'_>,
 ) -> Result<Outcome<Vec<OutwardPart<FaceKey>>>, CleanError> {
-    let before = Before::of(mesh);
-    // No open part is as sure as that.
-    let options = OutwardOptions { min_confidence: 1.0, control };
+    let options = OutwardOptions { control, ..Default::default() };
     // The confidence makes sense, so this is the only reason.
-    let found = mesh.orient_outward(options).map_err(|_| CleanError::Cancelled(Cancelled))?;
+    let found = mesh.orient_parts_outward(options, false).map_err(|_| CleanError::Cancelled(Cancelled))?;
     let mut outcome = unchanged(mesh, (), Step::TurnOutward);
     if found.iter().any(|p| p.reversed || p.crosses) {
-        let (parts, areas) = (Parts::of(mesh), Areas::of(mesh));
+        // Reversing renumbers nothing.
+        let (before, parts, areas) = (Before::of(mesh), Parts::of(mesh), Areas::of(mesh));
         let mut records = Vec::new();
         for (part, faces) in found.iter().zip(&parts.faces) {
             let kinds = [(part.reversed, Kind::TurnedShell), (part.crosses, Kind::CrossingShell)];

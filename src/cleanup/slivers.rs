@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 /// let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X / 2.0];
 /// let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2], [1, 0, 3]])?)?;
 /// let resolved = resolve_slivers(&mut mesh, SliverOptions::new(1e-9))?;
-/// assert_eq!((resolved.report.count(Kind::Cap), mesh.face_count()), (1, 1));
+/// assert_eq!((resolved.report.count(Kind::Cap), mesh.face_count()), (1, 2));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn resolve_slivers(

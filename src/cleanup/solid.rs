@@ -11,7 +11,9 @@ use super::step::Parts;
 use super::{CleanError, Control};
 use crate::matching::NONE;
 use crate::report::{Element, Maps, Outcome, Record, Relation, Report};
-use crate::{Cancelled, FillHolesOptions, Mesh, SelfIntersectionOptions, SliverError, SliverOptions};
+use crate::{
+    Cancelled, FillHolesOptions, Mesh, SelfIntersectionOptions, SliverError, SliverObstacle, SliverOptions,
+};
 use std::collections::BTreeMap;
 
 /// By what element of the soup a record names one of the mesh.
@@ -29,6 +31,8 @@ pub(super) struct Stage {
     pub(super) report: Report,
     pub(super) maps: Maps,
     pub(super) names: Names,
+    /// Whether the bound on the work at slivers was reached: once is enough.
+    pub(super) is_spent: bool,
 }
 
 /// How often the steps that change faces are run.
@@ -37,6 +41,9 @@ const MOST_ROUNDS: i32 = 8;
 /// How many pairs of faces that pass through each other are listed.
 const MOST_LISTED: usize = 10_000;
 
+/// So many pairs of faces, and some for each face, are held against each other: tens of times what files from life take.
+const MOST_TESTS: usize = 1 << 24;
+
 /// Runs the steps that make a solid.
 pub(super) fn solidify(
     stage: &mut Stage,
@@ -44,18 +51,24 @@ pub(super) fn solidify(
     debris: Option<usize>,
     control: &mut Control<'_>,
 ) -> Result<(), CleanError> {
-    // What one step does may leave work for one before it; seldom, and hardly ever twice.
+    // What one step does may leave work for one before it; seldom, and hardly ever twice. Turning changes in which order
+    // corners are looked at.
     for round in 0..MOST_ROUNDS {
         let share = 1.0 - 0.5f64.powi(round);
-        let is_changed = stage.round(tolerance, debris, &mut control.part(0.8 * share, 0.4 + 0.4 * share))?;
-        if !is_changed {
+        let mut own = control.part(0.8 * share, 0.4 + 0.4 * share);
+        let is_changed = stage.round(tolerance, debris, &mut own)?;
+        if is_changed && round + 1 < MOST_ROUNDS {
+            continue;
+        }
+        own.report("turn outward", 1.0)?;
+        let turned = turn_outward(&mut stage.mesh, own.part(1.0, 1.0))?;
+        if stage.join(turned).iter().all(|part| !part.reversed) {
             break;
         }
     }
-    control.report("turn outward", 0.8)?;
-    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.85))?;
-    stage.join(turned);
-    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, control: control.part(0.85, 0.97) };
+    let max_tests = MOST_TESTS + 64 * stage.mesh.face_count();
+    let hook = control.part(0.85, 0.97);
+    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, max_tests, control: hook };
     let found = find_intersections(&stage.mesh, options)?;
     stage.join(found);
     control.report("find open parts", 0.97)?;
@@ -76,7 +89,9 @@ impl Stage {
         control.report("drop fins", 0.0)?;
         let dropped = drop_fins(&mut self.mesh, tolerance)?;
         let mut is_changed = self.join(dropped) > 0;
-        is_changed |= self.resolve_slivers(control.part(0.1, 0.4))?;
+        if !self.is_spent {
+            is_changed |= self.resolve_slivers(control.part(0.1, 0.4))?;
+        }
         if let Some(fewer_than) = debris {
             self.drop_debris(fewer_than);
         }
@@ -101,7 +116,9 @@ impl Stage {
             SliverError::BadTolerance(t) => CleanError::BadTolerance(t),
             SliverError::Cancelled(c) => CleanError::Cancelled(c),
         })?;
-        Ok(!self.join(resolved).resolved.is_empty())
+        let resolved = self.join(resolved);
+        self.is_spent |= resolved.left.iter().any(|left| left.obstacle == SliverObstacle::Limit);
+        Ok(!resolved.resolved.is_empty())
     }
 
     /// Fills the holes of parts that can become solids.

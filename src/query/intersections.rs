@@ -14,13 +14,17 @@ use std::ops::Range;
 pub struct SelfIntersectionOptions<'a> {
     /// No more than this many pairs are listed, the first in storage order; all are counted. 2^20 by default.
     pub max_listed: usize,
+    /// When about this many triangles have been held against each other the search ends, and
+    /// [`unsearched`](SelfIntersections::unsearched) is not 0; 2^30 by default. Triangles whose boxes do not meet count little,
+    /// and where the search ends does not depend on the number of threads.
+    pub max_tests: usize,
     /// The progress-and-cancel hook.
     pub control: Control<'a>,
 }
 
 impl Default for SelfIntersectionOptions<'_> {
     fn default() -> Self {
-        Self { max_listed: 1 << 20, control: Control::none() }
+        Self { max_listed: 1 << 20, max_tests: 1 << 30, control: Control::none() }
     }
 }
 
@@ -48,6 +52,11 @@ pub struct SelfIntersections {
     pub crossings: usize,
     /// How many pairs only touch.
     pub touches: usize,
+    /// How many faces (triangles, of larger ones) were not held against all others, because the search ended: see
+    /// [`max_tests`](SelfIntersectionOptions::max_tests).
+    pub unsearched: usize,
+    /// One of them.
+    pub first_unsearched: Option<FaceKey>,
 }
 
 impl SelfIntersections {
@@ -75,9 +84,8 @@ impl Mesh {
         mut options: SelfIntersectionOptions<'_>,
     ) -> Result<SelfIntersections, Cancelled> {
         let index = self.index_with(options.control.part(0.0, 0.5))?;
-        let max_listed = options.max_listed;
         let control = options.control.part(0.5, 1.0);
-        index.self_intersections(SelfIntersectionOptions { max_listed, control })
+        index.self_intersections(SelfIntersectionOptions { control, ..options })
     }
 }
 
@@ -97,7 +105,7 @@ impl MeshIndex<'_> {
     /// and a cut next to it counts as an edge.
     ///
     /// Decided exactly, in the limits of the [index](MeshIndex). O(n log n) on surfaces from life, and the number of pairs of
-    /// faces whose boxes meet; on several threads with the feature `rayon`.
+    /// faces whose boxes meet, up to [`max_tests`](SelfIntersectionOptions::max_tests); on several threads with the feature `rayon`.
     ///
     /// # Errors
     /// [`Cancelled`] when the hook says so.
@@ -119,10 +127,11 @@ impl MeshIndex<'_> {
         &self,
         options: SelfIntersectionOptions<'_>,
     ) -> Result<SelfIntersections, Cancelled> {
-        let SelfIntersectionOptions { max_listed, mut control } = options;
+        let SelfIntersectionOptions { max_listed, max_tests, mut control } = options;
+        let mut left = (max_tests as u64).saturating_mul(TEST);
         let search = Search::new(self);
         let count = self.triangle_count() as u32;
-        let mut all = Found::new(max_listed);
+        let mut all = Found::new(max_listed, u64::MAX);
         for first in (0..count).step_by(ROUND as usize) {
             control.report("self-intersections", f64::from(first) / f64::from(count))?;
             let last = count.min(first.saturating_add(ROUND));
@@ -130,18 +139,31 @@ impl MeshIndex<'_> {
                 .step_by(BATCH as usize)
                 .map(|at| at..last.min(at.saturating_add(BATCH)))
                 .collect();
-            for found in each_piece(&batches, |batch| search.batch(batch.clone(), max_listed)) {
+            // An equal share for each, and what others leave for those with which it does not do.
+            let share = left / batches.len() as u64;
+            let pieces = each_piece(&batches, |batch| search.batch(batch.clone(), max_listed, share));
+            for (mut found, batch) in pieces.into_iter().zip(batches) {
+                if found.first_unsearched.is_some() && left > 2 * share {
+                    left -= share;
+                    found = search.batch(batch, max_listed, left);
+                }
+                left = left.saturating_sub(found.work);
                 all.merge(found);
             }
         }
         all.cut();
         let key = |f: u32| self.mesh.faces.key(f);
+        let first_unsearched = all.first_unsearched.map(|t| key(self.tree.faces[t as usize]));
         let pair = |p: Pair| FacePair {
             faces: p.faces.map(key),
             contact: p.contact,
             place: p.place / self.tree.scale,
         };
-        Ok(SelfIntersections { pairs: all.pairs.into_iter().map(pair).collect(), ..all.counts })
+        Ok(SelfIntersections {
+            pairs: all.pairs.into_iter().map(pair).collect(),
+            first_unsearched,
+            ..all.counts
+        })
     }
 }
 
@@ -149,6 +171,9 @@ impl MeshIndex<'_> {
 const ROUND: u32 = 1 << 14;
 /// Triangles of a piece of work.
 const BATCH: u32 = 1 << 8;
+
+/// What holding two triangles against each other costs, in triangles whose boxes are looked at.
+const TEST: u64 = 8;
 
 /// A pair in slots.
 #[derive(Clone, Copy, Debug)]
@@ -163,11 +188,26 @@ struct Found {
     pairs: Vec<Pair>,
     counts: SelfIntersections,
     max: usize,
+    /// What it took, and what it may.
+    work: u64,
+    most: u64,
+    first_unsearched: Option<u32>,
 }
 
 impl Found {
-    fn new(max: usize) -> Self {
-        Self { pairs: Vec::new(), counts: SelfIntersections::default(), max }
+    fn new(max: usize, most: u64) -> Self {
+        let counts = SelfIntersections::default();
+        Self { pairs: Vec::new(), counts, max, work: 0, most, first_unsearched: None }
+    }
+
+    /// Whether there is something left to spend; if not, a triangle is written down as not searched.
+    fn may_search(&mut self, triangle: u32) -> bool {
+        let may = self.work < self.most;
+        if !may {
+            self.counts.unsearched += 1;
+            self.first_unsearched.get_or_insert(triangle);
+        }
+        may
     }
 
     fn push(&mut self, pair: Pair) {
@@ -183,6 +223,8 @@ impl Found {
         self.counts.overlaps += other.counts.overlaps;
         self.counts.crossings += other.counts.crossings;
         self.counts.touches += other.counts.touches;
+        self.counts.unsearched += other.counts.unsearched;
+        self.first_unsearched = self.first_unsearched.or(other.first_unsearched);
         if self.pairs.len() / 2 > self.max.saturating_add(512) {
             self.cut();
         }
@@ -246,13 +288,16 @@ impl<'i> Search<'i> {
     }
 
     /// The pairs whose first face, in the order of the tree, has its first triangle among these.
-    fn batch(&self, triangles: Range<u32>, max: usize) -> Found {
+    /// No more work is done than so much, and that of one triangle.
+    fn batch(&self, triangles: Range<u32>, max: usize, most: u64) -> Found {
         let tree = &self.index.tree;
-        let mut found = Found::new(max);
+        let mut found = Found::new(max, most);
         let mut of_face: Vec<Pair> = Vec::new();
         for first in triangles {
             if self.by_face.is_empty() {
-                self.triangle(first, first, &mut |pair| found.push(pair));
+                if found.may_search(first) {
+                    found.work += self.triangle(first, first, &mut |pair| found.push(pair));
+                }
                 continue;
             }
             if self.first_of(first) != first {
@@ -260,7 +305,9 @@ impl<'i> Search<'i> {
             }
             let mut enough = 1024;
             for &piece in &self.by_face[self.range(tree.faces[first as usize])] {
-                self.triangle(first, piece, &mut |pair| of_face.push(pair));
+                if found.may_search(piece) {
+                    found.work += self.triangle(first, piece, &mut |pair| of_face.push(pair));
+                }
                 if of_face.len() > enough {
                     strongest(&mut of_face);
                     enough = 2 * of_face.len() + 1024;
@@ -272,8 +319,9 @@ impl<'i> Search<'i> {
         found
     }
 
-    /// Holds a triangle of the face whose first triangle is `first` against those of all faces that come after it.
-    fn triangle(&self, first: u32, piece: u32, push: &mut impl FnMut(Pair)) {
+    /// Holds a triangle of the face whose first triangle is `first` against those of all faces that come after it. What it took.
+    fn triangle(&self, first: u32, piece: u32, push: &mut impl FnMut(Pair)) -> u64 {
+        let mut work = 0;
         let tree = &self.index.tree;
         let face = tree.faces[piece as usize];
         let [a, b, c] = tree.places(piece);
@@ -292,6 +340,7 @@ impl<'i> Search<'i> {
                     stack.push(child);
                     continue;
                 }
+                work += u64::from(count);
                 for other in child..child + u32::from(count) {
                     if self.first_of(other) <= first {
                         continue;
@@ -301,6 +350,7 @@ impl<'i> Search<'i> {
                     if !(low.cmple(h) & l.cmple(high)).all() {
                         continue;
                     }
+                    work += TEST;
                     let own = own.get_or_insert_with(|| self.facet(piece));
                     let (facet, of_other) = (self.facet(other), tree.faces[other as usize]);
                     let met = if face < of_other { meet(own, &facet) } else { meet(&facet, own) };
@@ -310,6 +360,7 @@ impl<'i> Search<'i> {
                 }
             }
         }
+        work
     }
 }
 

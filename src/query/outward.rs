@@ -53,7 +53,8 @@ pub struct OutwardPart<F> {
     /// In how many closed parts it lies. Where that is odd, it bounds a cavity and faces inward. 0 for open parts.
     pub depth: u32,
     /// Whether some of its vertices lie inside another closed part and some outside: then it is turned by itself, as if
-    /// it lay in none. Looked for at up to 64 vertices.
+    /// it lay in none. Looked for at up to 64 vertices. Also where so many parts lie within each other, or in one place, that
+    /// this part was not asked: what all rays together meet is bounded.
     pub crosses: bool,
     /// How sure the direction is, from 0 to 1. For a closed part 1, unless it encloses no volume; for an open one twice
     /// the mean winding number on the surface, which is 1 for a closed one and 0 for a flat sheet.
@@ -70,7 +71,8 @@ impl Mesh {
     /// Depth is counted exactly, with the winding numbers of the other parts at vertices of the part. An open part is
     /// judged by the generalised winding number (Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside Segmentation
     /// using Generalized Winding Numbers", ACM Transactions on Graphics 32(4), 2013) at up to 256 of its faces.
-    /// O(n log n), and for each open part its faces times the faces looked at.
+    /// O(n log n), and for each open part its faces times the faces looked at. What rays meet is bounded, for files with very
+    /// many parts in one place: see [`OutwardPart::crosses`].
     ///
     /// # Errors
     /// [`OutwardError`]; nothing has changed then.
@@ -90,6 +92,15 @@ impl Mesh {
         &mut self,
         options: OutwardOptions<'_>,
     ) -> Result<Vec<OutwardPart<FaceKey>>, OutwardError> {
+        self.orient_parts_outward(options, true)
+    }
+
+    /// [`orient_outward`](Self::orient_outward), open parts too or closed ones only.
+    pub(crate) fn orient_parts_outward(
+        &mut self,
+        options: OutwardOptions<'_>,
+        open_too: bool,
+    ) -> Result<Vec<OutwardPart<FaceKey>>, OutwardError> {
         let components = self.components();
         let mut part_of = vec![NONE; self.faces.slot_count()];
         let mut closed = Vec::with_capacity(components.len());
@@ -106,7 +117,7 @@ impl Mesh {
             triangles.push(t);
             parts.push(part_of[f as usize]);
         });
-        let verdicts = judge(&self.positions, &triangles, &parts, &closed, options)?;
+        let verdicts = judge(&self.positions, &triangles, &parts, (&closed, open_too), options)?;
         let mut found = Vec::with_capacity(components.len());
         for (faces, verdict) in components.iter().zip(verdicts) {
             let face = faces[0];
@@ -169,7 +180,7 @@ pub fn orient_outward(
         triangles.extend_from_slice(rule.triangulate(corners, |v| pool.positions()[v as usize]));
         parts.resize(triangles.len(), part);
     }
-    let verdicts = judge(pool.positions(), &triangles, &parts, &closed, options)?;
+    let verdicts = judge(pool.positions(), &triangles, &parts, (&closed, true), options)?;
     let flip: Vec<bool> = part_of.iter().map(|&part| verdicts[part as usize].reverse).collect();
     let outcome = with_flipped(pool, &flip, Step::TurnOutward);
     let parts = verdicts.iter().zip(faces).map(|(v, (face, faces))| v.part(face, faces)).collect();
@@ -193,12 +204,13 @@ impl Verdict {
     }
 }
 
-/// Judges every part, given triangles (corners may carry [`CUT`]) with the part of each, and which parts are closed.
+/// Judges every part, given triangles (corners may carry [`CUT`]) with the part of each, which parts are closed, and
+/// whether open ones are asked at all.
 pub(crate) fn judge(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     part_of: &[u32],
-    closed: &[bool],
+    (closed, open_too): (&[bool], bool),
     options: OutwardOptions<'_>,
 ) -> Result<Vec<Verdict>, OutwardError> {
     let OutwardOptions { min_confidence, mut control } = options;
@@ -224,13 +236,18 @@ pub(crate) fn judge(
     } else {
         None
     };
-    let mut tally = Tally::new(closed.len());
+    let meets_other = if several { meeting_boxes(&boxes, closed) } else { vec![false; closed.len()] };
+    let mut tally = Tally::new(closed.len(), solid.len());
     let mut verdicts = Vec::with_capacity(closed.len());
     for (part, own) in of_part.iter().enumerate() {
         let [from, to] = [part, part + 1].map(|done| 0.3 + 0.7 * done as f64 / closed.len() as f64);
         control.report("turn outward", from)?;
         let mut verdict =
             Verdict { closed: closed[part], depth: 0, crosses: false, confidence: 0.0, reverse: false };
+        if !closed[part] && !open_too {
+            verdicts.push(verdict);
+            continue;
+        }
         if !closed[part] {
             let mean = mean_winding(own, places, control.part(from, to))?;
             verdict.confidence = (2.0 * mean.abs()).min(1.0);
@@ -239,7 +256,7 @@ pub(crate) fn judge(
             continue;
         }
         if let Some(tree) = &tree
-            && meets_other_box(&boxes, closed, part)
+            && meets_other[part]
         {
             (verdict.depth, verdict.crosses) = tally.depth(tree, part, vertices_of(own, corners), positions);
         }
@@ -251,12 +268,27 @@ pub(crate) fn judge(
     Ok(verdicts)
 }
 
-fn meets_other_box(boxes: &[Option<Aabb>], closed: &[bool], part: usize) -> bool {
-    let Some(own) = boxes[part] else { return false };
-    (0..boxes.len())
-        .filter(|&other| other != part && closed[other])
-        .filter_map(|other| boxes[other])
-        .any(|b| own.min.cmple(b.max).all() && b.min.cmple(own.max).all())
+/// Which closed parts' boxes may meet another's: all that do, and where very many lie above each other, some that do not.
+fn meeting_boxes(boxes: &[Option<Aabb>], closed: &[bool]) -> Vec<bool> {
+    const LOOKS: usize = 64;
+    let mut order: Vec<(usize, Aabb)> =
+        (0..boxes.len()).filter(|&p| closed[p]).filter_map(|p| Some((p, boxes[p]?))).collect();
+    order.sort_by(|a, b| a.1.min.x.total_cmp(&b.1.min.x));
+    let mut meets = vec![false; boxes.len()];
+    for (i, (part, own)) in order.iter().enumerate() {
+        let mut after = order[i + 1..].iter().take_while(|b| b.1.min.x <= own.max.x);
+        for (other, b) in after.by_ref().take(LOOKS) {
+            if own.min.cmple(b.max).all() && b.min.cmple(own.max).all() {
+                (meets[*part], meets[*other]) = (true, true);
+            }
+        }
+        if after.next().is_some() {
+            // Rays will tell.
+            order.iter().for_each(|o| meets[o.0] = true);
+            break;
+        }
+    }
+    meets
 }
 
 /// The vertices of triangles, ascending.
@@ -277,6 +309,8 @@ struct Tally {
     /// The parts met by one ray, and by all.
     met: Vec<u32>,
     ever_met: Vec<u32>,
+    /// How many more triangles may be asked.
+    budget: usize,
 }
 
 impl Tally {
@@ -284,7 +318,7 @@ impl Tally {
     /// At how many vertices of a part its depth is asked for.
     const LOOKED_AT: usize = 64;
 
-    fn new(parts: usize) -> Self {
+    fn new(parts: usize, triangles: usize) -> Self {
         let counts = || vec![0; parts];
         Self {
             winding: vec![0; parts],
@@ -292,14 +326,20 @@ impl Tally {
             on: counts(),
             met: Vec::new(),
             ever_met: Vec::new(),
+            // Rays from life ask a few dozen each.
+            budget: 64 * triangles + (1 << 22),
         }
     }
 
     /// In how many other parts a part lies, and whether that depends on where one asks: then none. Vertices on another
-    /// part's surface say nothing about that part.
+    /// part's surface say nothing about that part. Once the budget is spent, it is as if all depended on it.
     fn depth(&mut self, tree: &Tree, part: usize, vertices: Vec<u32>, positions: &[DVec3]) -> (u32, bool) {
         let mut looked = 0;
         for &v in vertices.iter().step_by(vertices.len().div_ceil(Self::LOOKED_AT)) {
+            if self.budget == 0 {
+                self.ever_met.drain(..).for_each(|p| (self.inside[p as usize], self.on[p as usize]) = (0, 0));
+                return (0, true);
+            }
             looked += 1;
             self.cast(tree, part, positions[v as usize]);
             for &other in &self.met {
@@ -325,7 +365,9 @@ impl Tally {
     fn cast(&mut self, tree: &Tree, part: usize, origin: DVec3) {
         let outward = origin * tree.scale - tree.center;
         let cast = Cast::new(tree, origin, SKEW.copysign(outward));
+        let budget = &mut self.budget;
         cast.walk(false, |range| {
+            *budget = budget.saturating_sub(range.len());
             for triangle in range {
                 let other = tree.faces[triangle as usize];
                 if other as usize == part {

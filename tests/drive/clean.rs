@@ -3,7 +3,9 @@
 use arbitrary::{Arbitrary, Result, Unstructured};
 use meshwright::cleanup::{Account, CleanOptions, Profile, Weld, clean, clean_indexed, index};
 use meshwright::glam::DVec3;
-use meshwright::{CornerData, Element, FaceKey, Group, IndexedMesh, Kind, Mesh, PolygonSoup, Polygons, Step};
+use meshwright::{
+    CornerData, Element, FaceKey, Group, IndexedMesh, Kind, Maps, Mesh, PolygonSoup, Polygons, Step,
+};
 
 /// A soup small enough for every way of going wrong to come up. Prints as Rust, to be pasted as a regression.
 #[derive(Arbitrary, Clone, Debug)]
@@ -12,7 +14,7 @@ pub(crate) struct Soup {
     pub(crate) points: Vec<[i8; 3]>,
     /// Indices, taken modulo a little more than the number of points.
     pub(crate) faces: Vec<Vec<u8>>,
-    /// Of what kind the weld is.
+    /// Of what kind the weld is, and from which number of faces on a part is no debris.
     pub(crate) weld: u8,
 }
 
@@ -75,6 +77,7 @@ pub(crate) fn check(case: &Soup) {
     assert_eq!((cleaned.maps.faces.old_len(), cleaned.maps.faces.new_len()), (old, new));
     let vertices = &cleaned.maps.vertices;
     assert_eq!((vertices.old_len(), vertices.new_len()), (soup.positions.len(), mesh.vertex_count()));
+    hold_both_ways(&cleaned.maps);
     let report = &cleaned.report;
     let dropped = [
         Kind::NonFiniteFace,
@@ -128,20 +131,23 @@ pub(crate) fn check(case: &Soup) {
     assert!(again.maps.vertices.is_identity() && again.maps.faces.is_identity());
 
     ladder(&soup);
-    solid(&soup, weld);
+    let debris = [None, Some(2), Some(4), Some(usize::MAX)][usize::from(case.weld / 4 % 4)];
+    without_debris(&soup, weld, debris, mesh);
+    solid(&soup, weld, debris);
     attributes(soup, weld, &pool);
 }
 
 /// The profile `solid` gives a valid mesh too, and an account that holds; what it leaves open, it names.
-fn solid(soup: &PolygonSoup, weld: Weld) {
-    let options = |weld| CleanOptions { weld, ..CleanOptions::solid() };
+fn solid(soup: &PolygonSoup, weld: Weld, debris: Option<usize>) {
+    let options = |weld| CleanOptions { weld, debris, ..CleanOptions::solid() };
     let cleaned = clean(soup, options(weld)).expect("a soup is never refused");
     let mesh = &cleaned.value;
     assert_eq!(mesh.violations(), []);
     let pool = mesh.to_indexed();
-    let account = Account::new(soup, (Profile::Solid, weld), &pool, &cleaned.report, &cleaned.maps);
+    hold_both_ways(&cleaned.maps);
+    let account = Account::new(soup, (Profile::Solid, weld), &pool, cleaned.report.clone(), &cleaned.maps);
     let account = account.expect("a soup is never refused");
-    let tally = account.faces;
+    let tally = account.face_tally;
     assert_eq!(tally.kept + tally.changed + tally.dropped, soup.polygons.len());
     assert_eq!(account.solid, mesh.is_closed());
     let records = &cleaned.report.records;
@@ -157,6 +163,33 @@ fn solid(soup: &PolygonSoup, weld: Weld) {
 
     let again = clean(&pool.clone().into(), options(Weld::None)).expect("never refused");
     assert_eq!(again.value.to_indexed(), pool, "a second pass changes something: {:?}", again.report.records);
+}
+
+/// Debris is dropped by its number of faces, and nothing else changes.
+fn without_debris(soup: &PolygonSoup, weld: Weld, debris: Option<usize>, whole: &Mesh) {
+    let cleaned = clean(soup, CleanOptions { weld, debris, ..Default::default() }).expect("never refused");
+    let mesh = &cleaned.value;
+    assert_eq!(mesh.violations(), []);
+    hold_both_ways(&cleaned.maps);
+    let is_left = |part: &&Vec<FaceKey>| debris.is_none_or(|fewer_than| part.len() >= fewer_than);
+    let left: usize = whole.components().iter().filter(is_left).map(Vec::len).sum();
+    assert_eq!(mesh.face_count(), left);
+    assert_eq!(cleaned.report.count(Kind::Debris), whole.face_count() - left);
+}
+
+/// What became of an element knows it came from it, and the other way round.
+fn hold_both_ways(maps: &Maps) {
+    for relation in [&maps.vertices, &maps.faces] {
+        let [old, new] = [relation.old_len(), relation.new_len()].map(|n| n as u32);
+        for o in 0..old {
+            let became = relation.new_of(o as usize);
+            assert!(became.iter().all(|&n| relation.old_of(n as usize).contains(&o)));
+        }
+        for n in 0..new {
+            let was = relation.old_of(n as usize);
+            assert!(was.iter().all(|&o| relation.new_of(o as usize).contains(&n)));
+        }
+    }
 }
 
 fn on_boundary(mesh: &Mesh, f: FaceKey) -> bool {

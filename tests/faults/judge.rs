@@ -12,8 +12,8 @@ pub(crate) type Faults = Vec<String>;
 
 macro_rules! check {
     ($faults:expr, $is:expr, $($text:tt)+) => {
-        let holds = $is;
-        if !holds {
+        let is_fine: bool = $is;
+        if !is_fine {
             $faults.push(format!($($text)+));
         }
     };
@@ -30,7 +30,8 @@ pub(crate) struct Result {
 pub(crate) fn solid(soup: &PolygonSoup, weld: Weld) -> Result {
     let outcome = clean_indexed(soup, CleanOptions { weld, ..CleanOptions::solid() });
     let Outcome { value: pool, report, maps } = outcome.expect("a soup is never refused");
-    let account = Account::new(soup, (Profile::Solid, weld), &pool, &report, &maps).expect("as before");
+    let account =
+        Account::new(soup, (Profile::Solid, weld), &pool, report.clone(), &maps).expect("as before");
     Result { pool, report, maps, account }
 }
 
@@ -43,7 +44,7 @@ pub(crate) fn honest(soup: &PolygonSoup, result: &Result) -> Faults {
     check!(faults, account.solid == mesh.is_closed(), "the account says solid: {}", account.solid);
 
     // The account adds up, and says of every face that is gone why.
-    let tally = account.faces;
+    let tally = account.face_tally;
     check!(faults, tally.input == soup.polygons.len(), "{tally:?}");
     check!(faults, tally.kept + tally.changed + tally.dropped == tally.input, "{tally:?}");
     check!(

@@ -94,7 +94,7 @@ fn a_sound_shape_has_an_empty_account() {
     for truth in truths() {
         let result = solid(&shapes::soup(&truth.pool), Weld::Auto);
         assert_eq!(result.report.records, [], "{}", truth.name);
-        assert!(result.pool == truth.pool && result.account.faces.kept == truth.pool.face_count());
+        assert!(result.pool == truth.pool && result.account.face_tally.kept == truth.pool.face_count());
     }
 }
 
@@ -170,7 +170,7 @@ fn what_cannot_become_a_solid_is_kept_and_named_and_the_rest_is_a_solid() {
         assert_eq!(honest(&alone, &result), Faults::new(), "{name}");
         let kinds = [Kind::NotOrientable, Kind::OpenSheet].map(|k| result.report.count(k));
         assert_eq!(kinds.iter().sum::<usize>(), 1, "{name}: {:?}", result.report.counts());
-        assert!(!result.account.solid && result.account.faces.kept == other.face_count(), "{name}");
+        assert!(!result.account.solid && result.account.face_tally.kept == other.face_count(), "{name}");
         for truth in truths() {
             let mut faulty = Faulty::new(&truth, 1);
             inject::holes(&mut faulty);
@@ -178,7 +178,7 @@ fn what_cannot_become_a_solid_is_kept_and_named_and_the_rest_is_a_solid() {
             let result = solid(&soup, Weld::Auto);
             assert_eq!(honest(&soup, &result), Faults::new(), "{name} beside {}", truth.name);
             assert!(!result.account.solid);
-            assert_eq!(result.account.faces.kept, soup.polygons.len(), "{name} beside {}", truth.name);
+            assert_eq!(result.account.face_tally.kept, soup.polygons.len(), "{name} beside {}", truth.name);
         }
     }
 }

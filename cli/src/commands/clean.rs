@@ -6,12 +6,12 @@ use crate::session::{Answer, Failure, Phase, Session};
 use crate::text::{self, counted};
 use crate::{import, output, progress};
 use meshwright::cleanup::{self, Account, CleanOptions, Weld};
-use meshwright::io::Format;
+use meshwright::io::{Format, Loaded};
 use meshwright::{Control, Outcome, PolygonSoup, Step};
 
 pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failure> {
     args.output.format()?;
-    let loaded = import::load(session, &args.file)?;
+    let Loaded { soup: file, notes } = import::load(session, &args.file)?;
     let (profile, usual) = match args.profile {
         Profile::Preserve => (cleanup::Profile::Preserve, Weld::Exact),
         Profile::Solid => (cleanup::Profile::Solid, Weld::Auto),
@@ -20,12 +20,14 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
     let outcome = session.timed(Phase::Run, || {
         progress::shown(|hook| {
             let options = CleanOptions { profile, weld, debris: args.debris, control: Control::new(hook) };
-            cleanup::clean_indexed(&loaded.soup, options)
+            cleanup::clean_indexed(&file, options)
         })
     })?;
     let Outcome { value, report, maps } = outcome;
+    let not_carried = text::not_carried(&report);
     let account =
-        session.timed(Phase::Run, || Account::new(&loaded.soup, (profile, weld), &value, &report, &maps))?;
+        session.timed(Phase::Run, || Account::new(&file, (profile, weld), &value, report, &maps))?;
+    drop(file);
     let soup: PolygonSoup = session.timed(Phase::Run, || value.into());
     // All files are complete before the first is put in its place.
     let (staged, lost) = output::stage_mesh(session, &args.output, &soup)?;
@@ -34,21 +36,22 @@ pub(super) fn clean(session: &mut Session, args: &Clean) -> Result<Answer, Failu
         staged.push(session.timed(Phase::Write, || output::stage_json(path, &maps))?);
     }
     let remerged = if args.output.format()? == Format::Stl { at_one_place(&soup)? } else { 0 };
+    // A million records in JSON need the room.
+    drop((soup, maps));
     let json = session
         .fields(args.report.is_some())
         .with_all(&account)
-        .with("notes", &loaded.notes)
+        .with("notes", &notes)
         .with("lost", &lost)
         .with("remerged_vertices", &remerged);
     if let Some(path) = &args.report {
-        let object = session.object(json.clone());
-        staged.push(session.timed(Phase::Write, || output::stage_text(path, &object))?);
+        staged.push(output::stage_with(path, |sink| session.write_object(&json, sink))?);
     }
     for file in staged {
         file.commit()?;
     }
     let mut text = told(&account);
-    for line in text::not_carried(&report) {
+    for line in not_carried {
         text.push_str(&format!("{line}\n"));
     }
     text.push_str(&format!("\nwrote {}\n", args.output.output.display()));

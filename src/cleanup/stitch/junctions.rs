@@ -242,10 +242,13 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
         for &(at, class) in &hits {
             let vertex = classes.key(seams.vertex[class as usize]) as usize;
             if in_face[vertex] == edge.face
+                || fan.as_ref().is_some_and(|fan| !fan.may_reach(classes.place(class)))
                 || apex.is_some_and(|(apex, _)| classes.is_joined(class, apex))
-                || fan.as_mut().is_some_and(|fan| !fan.reach(classes.place(class)))
             {
                 continue;
+            }
+            if let Some(fan) = &mut fan {
+                fan.from = classes.place(class);
             }
             in_face[vertex] = edge.face;
             edges_cut[class as usize] += 1;
@@ -269,17 +272,14 @@ impl Fan {
         Self { from, to, apex, normal }
     }
 
-    /// Goes on to a point, if the part up to it and the part that is left then face as the triangle does.
-    fn reach(&mut self, p: DVec3) -> bool {
+    /// Whether it may go on to a point: if the part up to it and the part that is left then face as the triangle does. In a
+    /// triangle without area there is no such point.
+    fn may_reach(&self, p: DVec3) -> bool {
         let faces = |a: DVec3, b: DVec3| {
             let normal = direction(b - a).cross(direction(self.apex - a));
             normal.dot(self.normal) > 0.0
         };
-        let fits = faces(self.from, p) && faces(p, self.to);
-        if fits {
-            self.from = p;
-        }
-        fits
+        faces(self.from, p) && faces(p, self.to)
     }
 }
 

@@ -14,6 +14,9 @@ pub struct FillHolesOptions<'a> {
     pub max_edges: Option<usize>,
     /// Loops of up to this many edges are filled with least area in O(n^3), longer ones in O(n log n) by ears; at most 2000.
     pub exact_edges: usize,
+    /// How much the O(n^3) method may cost in all loops together, in cubes of their edges; once it is spent, the shortest loops
+    /// first, ears serve for the rest. By default 2^32, about five seconds.
+    pub exact_cost: u64,
     /// A loop stays open if its filler's area is this share of the area of its part (the faces joined to it across edges),
     /// or more. The outside of a lone sheet is a hole as large as the sheet: filled, the part would be a bag without content. An
     /// open box has 0.2, half a sphere 0.5, a flat sheet 1. Infinite to fill sheets too.
@@ -34,6 +37,7 @@ impl Default for FillHolesOptions<'_> {
         Self {
             max_edges: None,
             exact_edges: 500,
+            exact_cost: 1 << 32,
             max_area_ratio: 0.8,
             polygon_tolerance: None,
             island_depth: 0.25,

@@ -102,7 +102,8 @@ impl Mesh {
     ///   coordinates, and user data is the default: what should be there cannot be known.
     /// - Checkpoints, columns and the record of changes see all of it: a hole is filled with one face, which is then split.
     ///
-    /// O(mesh) and what each loop takes: O(n^3) up to `exact_edges` (0.2 s for 500), O(n log n) on longer loops from life.
+    /// O(mesh) and what each loop takes: O(n^3) up to `exact_edges` (0.2 s for 500), O(n log n) on longer loops from life; so
+    /// too on further loops once [`exact_cost`](FillHolesOptions::exact_cost) is spent.
     ///
     /// # Errors
     /// [`FillHolesError`]; nothing has changed then. A hole that stays open is no error but in the account.
@@ -168,23 +169,30 @@ impl Mesh {
         let scale = unit_scale(self.vertices.live().map(|v| self.positions[v as usize]));
         let parts = options.max_area_ratio.is_finite().then(|| Parts::of(self, scale));
         let lengths: Vec<usize> = loops[wanted.clone()].iter().map(|&h| self.loop_slots(h).count()).collect();
-        let cost = |n: usize| if n <= options.exact_edges { (n as f64).powi(3) } else { 64.0 * n as f64 };
-        let all: f64 = lengths.iter().map(|&n| cost(n)).sum();
-        let costs: Vec<f64> = lengths.iter().map(|&n| cost(n) / all).collect();
+        let exact = exact_loops(&lengths, options);
+        let cost = |(&n, &exact): (&usize, &bool)| if exact { (n as f64).powi(3) } else { 64.0 * n as f64 };
+        let all: f64 = lengths.iter().zip(&exact).map(cost).sum();
+        let costs: Vec<f64> = lengths.iter().zip(&exact).map(|loop_| cost(loop_) / all).collect();
 
         let mut plans = Vec::with_capacity(lengths.len());
         let mut done = 0.0;
         let mut pace = Pace::new(&mut options.control);
         let limits = Limits {
             max_edges: options.max_edges.unwrap_or(usize::MAX),
-            exact_edges: options.exact_edges,
             tolerance: options.polygon_tolerance,
             ratio: options.max_area_ratio,
         };
         for (i, &first) in loops[wanted.clone()].iter().enumerate() {
             pace.fraction = 0.1 + 0.75 * done;
             pace.step(lengths[i])?;
-            plans.push(self.plan_hole(first, lengths[i], &limits, parts.as_ref(), scale, &mut pace)?);
+            plans.push(self.plan_hole(
+                first,
+                (lengths[i], exact[i]),
+                &limits,
+                parts.as_ref(),
+                scale,
+                &mut pace,
+            )?);
             done += costs[i];
         }
 
@@ -204,7 +212,7 @@ impl Mesh {
     fn plan_hole(
         &self,
         first: u32,
-        edges: usize,
+        (edges, exact): (usize, bool),
         limits: &Limits,
         parts: Option<&Parts>,
         scale: f64,
@@ -221,7 +229,7 @@ impl Mesh {
         let (ears, area, method) = if let Some(area) = one_face(&ring, limits.tolerance) {
             (Some(Ears::new()), area, FillMethod::OneFace)
         } else {
-            let (ears, method) = if edges <= limits.exact_edges {
+            let (ears, method) = if exact {
                 (minimal::lightest(&ring, &corners, pace)?, FillMethod::LeastArea)
             } else {
                 (ears::clip(&ring, pace)?, FillMethod::Ears)
@@ -291,9 +299,22 @@ impl Mesh {
 /// The options that hold for each loop.
 struct Limits {
     max_edges: usize,
-    exact_edges: usize,
     tolerance: Option<f64>,
     ratio: f64,
+}
+
+/// Which loops are filled with least area: the shortest, as far as it goes.
+fn exact_loops(lengths: &[usize], options: &FillHolesOptions<'_>) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..lengths.len()).filter(|&i| lengths[i] <= options.exact_edges).collect();
+    order.sort_by_key(|&i| lengths[i]);
+    let mut exact = vec![false; lengths.len()];
+    let mut left = options.exact_cost;
+    for i in order {
+        let Some(rest) = left.checked_sub((lengths[i] as u64).pow(3)) else { break };
+        left = rest;
+        exact[i] = true;
+    }
+    exact
 }
 
 /// The area of the one face that fills a loop, if one does: a triangle, or a polygon that is flat within the tolerance and
