@@ -257,7 +257,7 @@ fn an_empty_file_of_faces_is_refused_where_there_is_no_answer() {
         assert_eq!(code, expected, "{args:?}: {answer}");
     }
     // Without vertices either.
-    fs::write(dir.join("a.obj"), "").expect("written");
+    fs::write(dir.join("a.obj"), "# nothing\n").expect("written");
     for args in [
         &["weld", "--tolerance", "0.1"][..],
         &["unweld", "--angle", "30"],
