@@ -112,6 +112,22 @@ fn solids_that_touch_at_a_vertex_come_apart() {
 }
 
 #[test]
+fn everything_at_once_is_repaired_at_solids_that_touch_at_a_vertex() {
+    let (mut igl, mut failed) = (Igl::start(), Vec::new());
+    for truth in truths() {
+        let (both, soup) = inject::touching_at_a_vertex(&truth);
+        let mut faulty = Faulty::new(&both, 1);
+        faulty.faces.iter_mut().zip(soup.polygons.iter()).for_each(|(face, glued)| face.0 = glued.to_vec());
+        inject::all_at_once(&mut faulty);
+        let found = judged(&both, &faulty.soup(), &faulty.intact, faulty.jitter, &mut igl);
+        if !found.is_empty() {
+            failed.push(format!("{}: {}", truth.name, found.join("; ")));
+        }
+    }
+    finish(truths().len() - failed.len(), &failed);
+}
+
+#[test]
 fn solids_that_touch_at_an_edge_come_apart() {
     let (mut igl, mut failed, mut met) = (Igl::start(), Vec::new(), 0);
     for truth in truths() {
