@@ -1,14 +1,14 @@
 //! Reduction to a tenth of the faces, on a generated sphere or on a shape from a file.
 //!
 //! `cargo bench --bench reduce [-- --levels N] [--shape FILE] [--faces N] [--threads N] [--repeats N] [--write OUT.ply]`:
-//! prints a line per operation, processor time of the calling thread and time on the clock; `--write` leaves the result
+//! prints a line per operation, processor time of all threads and time on the clock; `--write` leaves the result
 //! for `peers/reduce.py`, which measures how far it is from the original. A shape is what `--bench peers -- --write`
 //! makes.
 
 #[path = "../tests/shapes/mod.rs"]
 mod shapes;
 
-use cpu_time::ThreadTime;
+use cpu_time::ProcessTime;
 use meshwright::{Mesh, ReduceOptions, ReduceTarget};
 use std::error::Error;
 use std::time::Instant;
@@ -30,9 +30,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut reduced = mesh.clone();
     for _ in 0..number("--repeats", 3)?.max(1) {
         reduced = mesh.clone();
-        let (thread, start) = (ThreadTime::now(), Instant::now());
+        let (process, start) = (ProcessTime::now(), Instant::now());
         let account = reduced.reduce(ReduceOptions { target, ..Default::default() })?;
-        busy = busy.min(thread.elapsed().as_secs_f64());
+        busy = busy.min(process.elapsed().as_secs_f64());
         clock = clock.min(start.elapsed().as_secs_f64());
         eprintln!("{} collapses, {:?}", account.collapses, account.refusals);
     }

@@ -44,9 +44,9 @@ pub(crate) fn run() -> Result<Features, Box<dyn Error>> {
     faces.push(n..2 * n);
     let mesh = Mesh::build(&IndexedMesh::new(level(0.0).chain(level(10.0)).collect(), faces)?)?;
 
-    let sharp = 30f64.to_radians();
+    let sharp = 30.0;
     let length = |h| mesh.position(mesh.origin(h)).distance(mesh.position(mesh.target(h)));
-    let paths = mesh.feature_paths(FeatureOptions { angle: sharp, boundary: true });
+    let paths = mesh.feature_paths(FeatureOptions { degrees: sharp, boundary: true });
     let paths = paths.iter().map(|path| SharpPath {
         edges: path.halfedges.len(),
         length: path.halfedges.iter().map(|&h| length(h)).sum(),

@@ -58,8 +58,32 @@ impl<'a> Control<'a> {
         Self::default()
     }
 
-    /// The hook for a call that is a part of this one, between two fractions of it.
-    pub(crate) fn part(&mut self, from: f64, to: f64) -> Control<'_> {
+    /// The hook for a call that is a part of this one: what that tells as 0 to 1 is told as `from` to `to` of the whole.
+    /// `from` should not exceed `to`, nor lie below what was told before. Parts may have parts.
+    ///
+    /// # Examples
+    /// ```
+    /// use meshwright::{Control, IndexedMesh, Mesh, SmoothOptions, SubdivideOptions, glam::DVec3};
+    /// /// Subdivides and smooths, as one call with one hook.
+    /// fn refine(mesh: &Mesh, mut control: Control<'_>) -> Result<Mesh, Box<dyn std::error::Error>> {
+    ///     let options = SubdivideOptions { control: control.part(0.0, 0.7), ..Default::default() };
+    ///     let mut fine = mesh.subdivide(options)?.value;
+    ///     fine.smooth(SmoothOptions { control: control.part(0.7, 1.0), ..Default::default() })?;
+    ///     Ok(fine)
+    /// }
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// # let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &faces)?)?;
+    /// let mut fractions = Vec::new();
+    /// let mut hook = |p: meshwright::Progress| {
+    ///     fractions.push(p.fraction);
+    ///     std::ops::ControlFlow::Continue(())
+    /// };
+    /// assert_eq!(refine(&mesh, Control::new(&mut hook))?.face_count(), 16);
+    /// assert!(fractions.is_sorted() && fractions.contains(&0.7));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn part(&mut self, from: f64, to: f64) -> Control<'_> {
         let at = |fraction: f64| self.from + (self.to - self.from) * fraction;
         let (from, to) = (at(from), at(to));
         let hook: Option<&mut dyn FnMut(Progress) -> ControlFlow<()>> = match &mut self.hook {
@@ -74,11 +98,16 @@ impl<'a> Control<'a> {
     /// # Errors
     /// [`Cancelled`] when the hook says so.
     pub fn report(&mut self, stage: &'static str, fraction: f64) -> Result<(), Cancelled> {
-        let fraction = self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0);
+        let fraction = share(self.from + (self.to - self.from) * share(fraction));
         let progress = Progress { stage, fraction };
         let answer = self.hook.as_mut().map_or(ControlFlow::Continue(()), |hook| hook(progress));
         if answer.is_break() { Err(Cancelled) } else { Ok(()) }
     }
+}
+
+/// Within 0 to 1, whatever was given.
+fn share(fraction: f64) -> f64 {
+    if fraction > 0.0 { fraction.min(1.0) } else { 0.0 }
 }
 
 impl fmt::Debug for Control<'_> {

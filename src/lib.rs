@@ -14,7 +14,8 @@
 //! The [design page](design) has the module graph and the numbered invariants, the [walking page](walking) the orders
 //! of walks and how to edit while walking.
 //!
-//! Lengths are in the units of the input; angles are in radians unless a name says degrees. Nothing is random and
+//! Lengths are in the units of the input; angles are given in degrees, by options whose names say so, and answered in
+//! radians. Nothing is random and
 //! nothing depends on hash order or on the number of threads.
 //!
 //! # Features
@@ -72,7 +73,7 @@ pub use geometry::fill::{
 };
 pub use geometry::measure::Aabb;
 pub use geometry::normals::NormalWeight;
-pub use geometry::reduce::{Lock, ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
+pub use geometry::reduce::{ReduceError, ReduceOptions, ReduceTarget, Reduced, Refusals, Stopped};
 pub use geometry::slivers::{
     LeftSliver, ResolvedSliver, Sliver, SliverAccount, SliverAction, SliverError, SliverKind, SliverObstacle,
     SliverOptions,
@@ -80,7 +81,7 @@ pub use geometry::slivers::{
 pub use geometry::smooth::{Boundary, SmoothError, SmoothMethod, SmoothOptions};
 pub use geometry::subdivide::{Scheme, SubdivideError, SubdivideOptions};
 pub use geometry::transform::TransformError;
-pub use geometry::weld::{BadAngle, UnweldError, UnweldOptions, WeldOptions};
+pub use geometry::weld::{BadAngle, UnweldError, UnweldOptions, WeldError, WeldOptions};
 pub use glam;
 pub use indexed::{IndexedDefect, IndexedError, IndexedMesh};
 pub use key::{EdgeKey, FaceKey, HalfedgeKey, VertexKey};

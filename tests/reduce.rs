@@ -94,7 +94,7 @@ fn a_sphere_ends_as_a_tetrahedron_or_little_more() {
 #[test]
 fn a_torus_stays_a_torus() {
     let mut mesh = shapes::mesh(&shapes::fanned(&shapes::torus(24, 12)));
-    let options = ReduceOptions { max_turn: std::f64::consts::FRAC_PI_2, min_shape: 0.0, ..faces(1) };
+    let options = ReduceOptions { max_turn_degrees: 90.0, min_shape: 0.0, ..faces(1) };
     let account = reduced(&mut mesh, options);
     assert!((14..60).contains(&account.faces), "{account:?}");
 }
@@ -130,9 +130,9 @@ fn bad_input_is_refused_and_changes_nothing() {
     assert!(matches!(refused(to(ReduceTarget::MaxError(f64::NAN))), ReduceError::BadErrorBound(_)));
     for options in [
         ReduceOptions { line_weight: f64::NAN, ..Default::default() },
-        ReduceOptions { max_turn: 0.0, ..Default::default() },
+        ReduceOptions { max_turn_degrees: 0.0, ..Default::default() },
         ReduceOptions { min_shape: 1.0, ..Default::default() },
-        ReduceOptions { sharp_angle: Some(f64::NAN), ..Default::default() },
+        ReduceOptions { sharp_degrees: Some(f64::NAN), ..Default::default() },
     ] {
         assert!(matches!(refused(options), ReduceError::BadOption { .. }));
     }
@@ -206,7 +206,7 @@ fn sharp_edges_are_kept_by_angle() {
     for _ in 0..4 {
         split_all(&mut cube);
     }
-    let options = ReduceOptions { sharp_angle: Some(30f64.to_radians()), ..faces(12) };
+    let options = ReduceOptions { sharp_degrees: Some(30.0), ..faces(12) };
     let account = reduced(&mut cube, options);
     assert!(account.faces == 12, "{account:?}");
     let corners: Vec<_> = cube.vertices().map(|v| cube.position(v)).collect();
@@ -245,8 +245,8 @@ fn locked_vertices_and_edges_stay_where_they_are() {
     };
     let before: Vec<_> = edges.iter().map(|&e| ends(&mesh, e)).collect();
     let options = ReduceOptions {
-        locked_vertices: Some(&|v| vertices.contains(&v)),
-        locked_edges: Some(&|e| edges.contains(&e)),
+        locked_vertices: &vertices,
+        locked_edges: &edges,
         target: ReduceTarget::Faces(10),
         ..Default::default()
     };
@@ -538,7 +538,7 @@ proptest! {
         if random.below(2) == 0 {
             mesh.record_changes();
         }
-        let sharp_angle = sharp.then_some(0.5);
-        reduced(&mut mesh, ReduceOptions { sharp_angle, ..faces(keep) });
+        let sharp_degrees = sharp.then_some(30.0);
+        reduced(&mut mesh, ReduceOptions { sharp_degrees, ..faces(keep) });
     }
 }

@@ -267,15 +267,6 @@ fn a_cancelled_deformation_changes_nothing() {
     assert_eq!(mesh.to_indexed(), before);
 }
 
-#[test]
-fn the_empty_mesh_can_be_transformed() {
-    let mut mesh = Mesh::default();
-    mesh.translate(DVec3::X).expect("moved");
-    mesh.scale(-1.0, DVec3::X).expect("scaled");
-    mesh.rotate_degrees(DVec3::X, 30.0, DVec3::X).expect("turned");
-    assert_eq!((mesh.bounds(), mesh.validate()), (None, Ok(())));
-}
-
 fn vector() -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-10.0f64..10.0).prop_map(DVec3::from)
 }

@@ -5,11 +5,11 @@ mod corpus;
 mod naive;
 mod shapes;
 
-use meshwright::cleanup::{CleanError, Weld, index};
+use meshwright::cleanup::{CleanOptions, Weld, clean, index};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    Control, Element, IndexedMesh, Kind, Mesh, Outcome, PolygonSoup, Progress, Step, UnweldError,
-    UnweldOptions, WeldOptions,
+    Control, Element, IndexedMesh, Kind, Mesh, Outcome, PolygonSoup, Polygons, Progress, Step, UnweldError,
+    UnweldOptions, WeldError, WeldOptions,
 };
 use proptest::prelude::*;
 use std::ops::ControlFlow;
@@ -116,7 +116,7 @@ fn a_tolerance_that_makes_no_sense_is_refused() {
     let mesh = shapes::mesh(&shapes::cube());
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let refused = mesh.weld(WeldOptions { tolerance, ..Default::default() });
-        assert!(matches!(refused, Err(CleanError::BadTolerance(_))));
+        assert!(matches!(refused, Err(WeldError::BadTolerance(_))));
     }
 }
 
@@ -130,7 +130,7 @@ fn weld_and_unweld_can_be_cancelled() {
             if count > stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let options = WeldOptions { tolerance: 0.1, control: Control::new(&mut hook) };
-        assert!(matches!(mesh.weld(options), Err(CleanError::Cancelled(_))), "{stop}");
+        assert!(matches!(mesh.weld(options), Err(WeldError::Cancelled(_))), "{stop}");
         count = 0;
         let mut hook = |_: Progress| {
             count += 1;
@@ -215,6 +215,9 @@ fn unwelding_corpus_meshes_and_welding_them_gives_them_back() {
     for row in rows.iter().filter(|r| r.is_readable()) {
         let Ok(soup) = row.load() else { continue };
         let mesh = meshwright::cleanup::clean(&soup, Default::default()).expect("always answers").value;
+        if mesh.vertex_count() == 0 {
+            continue;
+        }
         let parted = unweld(&mesh, 20.0);
         assert_eq!(parted.value.face_count(), mesh.face_count(), "{}", row.path);
         for record in &parted.report.records {
@@ -229,6 +232,50 @@ fn unwelding_corpus_meshes_and_welding_them_gives_them_back() {
         }
     }
     assert!(compared > 100, "only {compared} were compared");
+}
+
+/// What is on record is in the mesh's numbers, and each vertex of the result within reach of those it comes from.
+fn assert_maps_and_records(mesh: &Mesh, outcome: &Outcome<Mesh>) {
+    assert_eq!(outcome.maps.vertices.old_len(), mesh.vertex_count());
+    assert_eq!(outcome.maps.vertices.new_len(), outcome.value.vertex_count());
+    assert_eq!(outcome.maps.faces.old_len(), mesh.face_count());
+    assert_eq!(outcome.maps.faces.new_len(), outcome.value.face_count());
+    let (vertices, faces) = (mesh.vertex_count() as u32, mesh.face_count() as u32);
+    for record in &outcome.report.records {
+        let is_there = match record.element {
+            Element::Vertex(v) => v < vertices,
+            Element::Edge(ends) => ends.iter().all(|&v| v < vertices),
+            Element::Face(f) | Element::Corner([f, _]) => f < faces,
+            Element::Faces(pair) => pair.iter().all(|&f| f < faces),
+            Element::VertexOnEdge(all) => all.iter().all(|&v| v < vertices),
+        };
+        assert!(is_there, "{record:?}");
+    }
+}
+
+#[test]
+fn models_whose_merges_are_taken_back_are_welded_once() {
+    let Some(rows) = corpus::rows() else { return };
+    let names = [
+        "manifold__openscad-nonmanifold-crash.obj",
+        "bullet__lego.obj",
+        "trimesh__box.STL",
+        "sofa__teeth.obj",
+    ];
+    let mut welded = 0;
+    for row in rows.iter().filter(|row| names.iter().any(|name| row.path.ends_with(name))) {
+        let soup = row.load().expect("read");
+        let mesh = clean(&soup, CleanOptions::default()).expect("always answers").value;
+        let size = mesh.bounds().map(|b| b.min.distance(b.max)).expect("vertices");
+        for share in [0.0, 1e-4, 1e-3, 1e-2, 0.05] {
+            let once = weld(&mesh, share * size);
+            assert_maps_and_records(&mesh, &once);
+            let twice = weld(&once.value, share * size);
+            assert!(twice.value.to_indexed() == once.value.to_indexed(), "{} {share}", row.path);
+            welded += usize::from(once.value.vertex_count() < mesh.vertex_count());
+        }
+    }
+    assert!(welded > 8, "only {welded} were welded");
 }
 
 fn jittered(seed: u64, size: f64) -> IndexedMesh {
@@ -246,7 +293,8 @@ proptest! {
         let outcome = weld(&shapes::mesh(&pool), t);
         let expected = naive::weld(pool.positions(), t);
         // What splitting takes back keeps its own place.
-        let split = outcome.report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0);
+        let split = outcome.report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0)
+            || outcome.value.vertex_count() == pool.vertex_count();
         for (v, &kept) in expected.iter().enumerate() {
             for &new in outcome.maps.vertices.new_of(v) {
                 let at = outcome.value.position(outcome.value.vertices().nth(new as usize).expect("there"));
@@ -266,6 +314,25 @@ proptest! {
         let twice = weld(&once, t);
         prop_assert_eq!(twice.value.to_indexed(), once.to_indexed());
         prop_assert!(twice.report.is_empty(), "{:?}", twice.report);
+    }
+
+    #[test]
+    fn welding_what_crosses_and_touches_twice_is_welding_it_once(
+        seed in any::<u64>(), n in 4u32..24, faces in 3..40, t in prop_oneof![Just(0.0), 1e-3f64..0.9],
+    ) {
+        let mut noise = shapes::Noise(seed);
+        let mut polygons = Polygons::default();
+        for _ in 0..faces {
+            polygons.push((0..3 + noise.below(3)).map(|_| noise.below(n)).collect::<Vec<_>>());
+        }
+        let points = (0..n).map(|_| dvec3(noise.unit(), noise.unit(), noise.unit())).collect();
+        let options = CleanOptions { weld: Weld::None, ..Default::default() };
+        let mesh = clean(&PolygonSoup::new(points, polygons), options).expect("always answers").value;
+        let once = weld(&mesh, t);
+        assert_maps_and_records(&mesh, &once);
+        let twice = weld(&once.value, t);
+        prop_assert_eq!(twice.value.to_indexed(), once.value.to_indexed());
+        prop_assert!(twice.report.is_empty() && twice.maps.vertices.is_identity(), "{:?}", twice.report);
     }
 
     #[test]

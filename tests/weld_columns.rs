@@ -4,8 +4,8 @@ mod shapes;
 
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
-    Column, EdgeKey, Event, FaceKey, HalfedgeKey, IndexedMesh, Mesh, Outcome, Rule, UnweldOptions, VertexKey,
-    WeldOptions,
+    Column, EdgeKey, Event, FaceKey, HalfedgeKey, IndexedMesh, Kind, Mesh, Outcome, Rule, UnweldOptions,
+    VertexKey, WeldOptions,
 };
 use shapes::Noise;
 
@@ -125,6 +125,8 @@ fn named(mesh: &mut Mesh) -> Names {
 /// Whether what the columns say is what the maps say.
 fn assert_follow(name: &str, outcome: &Outcome<Mesh>, names: &Names) {
     let Outcome { value: mesh, maps, .. } = outcome;
+    // The middle of a parted edge may have been merged with a vertex since.
+    let is_parted = outcome.report.count(Kind::ParallelEdge) > 0;
     let number = |v: VertexKey| mesh.vertices().position(|w| w == v).expect("there");
     for (i, v) in mesh.vertices().enumerate() {
         let olds = maps.vertices.old_of(i);
@@ -139,15 +141,17 @@ fn assert_follow(name: &str, outcome: &Outcome<Mesh>, names: &Names) {
             let [face, vertex] = *mesh.value(names.corner, h);
             if !olds.is_empty() {
                 assert_eq!(face, *mesh.value(names.face, f), "{name}");
-                assert!(olds.contains(&(vertex as u32)), "{name}: {vertex} in {olds:?}");
+                assert!(is_parted || olds.contains(&(vertex as u32)), "{name}: {vertex} in {olds:?}");
             }
             let edge = *mesh.value(names.edge, mesh.edge(h));
             let ends = [mesh.origin(h), mesh.target(h)].map(number);
             if edge[0] != usize::MAX && ends.iter().all(|&v| !maps.vertices.old_of(v).is_empty()) {
-                for v in edge {
-                    let new = maps.vertices.new_of(v);
-                    assert!(ends.iter().any(|&e| new.contains(&(e as u32))), "{name}: {edge:?} at {ends:?}");
-                }
+                let is_there = |v: &usize| {
+                    let new = maps.vertices.new_of(*v);
+                    ends.iter().any(|&e| new.contains(&(e as u32)))
+                };
+                let there = edge.iter().filter(|v| is_there(v)).count();
+                assert!(there == 2 || there == 1 && is_parted, "{name}: {edge:?} at {ends:?}");
             }
         }
     }

@@ -248,12 +248,29 @@ fn an_empty_file_of_faces_is_refused_where_there_is_no_answer() {
         (&["reduce", "--faces", "4", "a.obj", "-o", "b.ply"], 1),
         (&["smooth", "--iterations", "1", "--lambda", "0.5", "a.obj", "-o", "c.ply"], 0),
         (&["transform", "--scale", "2", "a.obj", "-o", "c.ply"], 0),
+        (&["subdivide", "--scheme", "loop", "--levels", "1", "a.obj", "-o", "b.ply"], 1),
         (&["raycast", "a.obj", "--origin", "0,0,0", "--direction", "1,0,0"], 0),
         (&["closest", "a.obj", "--point", "0,0,0", "--to", "vertex"], 0),
         (&["closest", "a.obj", "--point", "0,0,0", "--to", "surface"], 1),
     ] {
         let (code, answer): (i32, Value) = json(&dir, args);
         assert_eq!(code, expected, "{args:?}: {answer}");
+    }
+    // Without vertices either.
+    fs::write(dir.join("a.obj"), "").expect("written");
+    for args in [
+        &["weld", "--tolerance", "0.1"][..],
+        &["unweld", "--angle", "30"],
+        &["smooth", "--iterations", "1", "--lambda", "0.5"],
+        &["transform", "--scale", "2"],
+        &["deform", "--wave", "0.1"],
+    ] {
+        let (code, answer) = json(&dir, &[args, &["a.obj", "-o", "b.ply"]].concat());
+        assert_eq!(
+            (code, answer["error"]["message"].as_str()),
+            (1, Some("there are no vertices")),
+            "{args:?}"
+        );
     }
     assert!(!dir.join("b.ply").exists());
 }

@@ -43,6 +43,7 @@ pub use tolerance::{ProposedTolerance, propose_tolerance, propose_tolerance_with
 use crate::report::{Outcome, Report};
 use crate::{BuildError, Cancelled, Control, IndexedMesh, Mesh, PolygonSoup};
 use pool::Pool;
+pub(crate) use solid::Names;
 
 /// What clean-up is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -199,6 +200,8 @@ pub fn clean_indexed(
 
 /// Where the elements of the result were in the soup.
 pub(crate) struct Sources {
+    /// For each vertex the lowest of the soup's.
+    pub(crate) vertices: Vec<u32>,
     /// For each corner the soup's.
     pub(crate) corners: Vec<u32>,
     /// For each face the soup's.

@@ -320,9 +320,10 @@ impl<'s> Pool<'s> {
         (self.positions, self.polygons, _) = indexed.into_parts();
     }
 
-    /// Where its elements come from, moved out but for faces, which the maps need.
+    /// Where its elements come from, moved out but for vertices and faces, which the maps and names need.
     pub(super) fn sources(&mut self) -> Sources {
         Sources {
+            vertices: self.vertex_source.clone(),
             corners: std::mem::take(&mut self.corner_source),
             faces: self.face_source.clone(),
             middles: std::mem::take(&mut self.middles),

@@ -17,7 +17,7 @@ use crate::{
 use std::collections::BTreeMap;
 
 /// By what element of the soup a record names one of the mesh.
-pub(super) struct Names {
+pub(crate) struct Names {
     vertex: Vec<u32>,
     /// [`NONE`] for a face that was made from nothing.
     face: Vec<u32>,
@@ -51,20 +51,24 @@ pub(super) fn solidify(
     debris: Option<usize>,
     control: &mut Control<'_>,
 ) -> Result<(), CleanError> {
-    // What one step does may leave work for one before it; seldom, and hardly ever twice.
+    // What one step does may leave work for one before it; seldom, and hardly ever twice. Turning changes in which order
+    // corners are looked at.
     for round in 0..MOST_ROUNDS {
         let share = 1.0 - 0.5f64.powi(round);
-        let is_changed = stage.round(tolerance, debris, &mut control.part(0.8 * share, 0.4 + 0.4 * share))?;
-        if !is_changed {
+        let mut own = control.part(0.8 * share, 0.4 + 0.4 * share);
+        let is_changed = stage.round(tolerance, debris, &mut own)?;
+        if is_changed && round + 1 < MOST_ROUNDS {
+            continue;
+        }
+        own.report("turn outward", 1.0)?;
+        let turned = turn_outward(&mut stage.mesh, own.part(1.0, 1.0))?;
+        if stage.join(turned).iter().all(|part| !part.reversed) {
             break;
         }
     }
-    control.report("turn outward", 0.8)?;
-    let turned = turn_outward(&mut stage.mesh, control.part(0.8, 0.85))?;
-    stage.join(turned);
     let max_tests = MOST_TESTS + 32 * stage.mesh.face_count();
-    let control_part = control.part(0.85, 0.97);
-    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, max_tests, control: control_part };
+    let hook = control.part(0.85, 0.97);
+    let options = SelfIntersectionOptions { max_listed: MOST_LISTED, max_tests, control: hook };
     let found = find_intersections(&stage.mesh, options)?;
     stage.join(found);
     control.report("find open parts", 0.97)?;
@@ -155,7 +159,7 @@ impl Stage {
 }
 
 impl Names {
-    pub(super) fn new(vertex: Vec<u32>, face: Vec<u32>) -> Self {
+    pub(crate) fn new(vertex: Vec<u32>, face: Vec<u32>) -> Self {
         Self { vertex, face, made: BTreeMap::new() }
     }
 
@@ -167,7 +171,7 @@ impl Names {
     }
 
     /// An element of the mesh in the soup's numbers; a face made from nothing is named by a vertex.
-    fn of(&self, element: Element) -> Element {
+    pub(crate) fn of(&self, element: Element) -> Element {
         let vertex = |v: u32| self.vertex[v as usize];
         match element {
             Element::Vertex(v) => Element::Vertex(vertex(v)),
@@ -190,6 +194,12 @@ impl Names {
                 Element::VertexOnEdge([vertex(v), a.min(b), a.max(b)])
             }
         }
+    }
+
+    /// The names after another clean-up, whose names are in these numbers; both without faces made from nothing.
+    pub(crate) fn then(&self, next: &Self) -> Self {
+        let named = |names: &[u32], by: &[u32]| by.iter().map(|&i| names[i as usize]).collect();
+        Self::new(named(&self.vertex, &next.vertex), named(&self.face, &next.face))
     }
 
     /// The names after a step: of what several became, the lowest.

@@ -14,6 +14,9 @@ pub struct DeformOptions<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeformError {
+    /// The mesh has no vertices.
+    #[error("there are no vertices")]
+    Empty,
     /// The function gave a position that is NaN or infinite.
     #[error("the new position of {0:?} is not finite")]
     NonFinite(VertexKey),
@@ -28,7 +31,7 @@ impl Mesh {
     /// [compute](Self::compute_normals) them anew if the shape has changed. O(vertices).
     ///
     /// # Errors
-    /// [`DeformError`] naming the first vertex that got no finite position, or when cancelled.
+    /// [`DeformError`] naming the first vertex that got no finite position; on a mesh without vertices; when cancelled.
     ///
     /// # Examples
     /// A wave:
@@ -49,6 +52,9 @@ impl Mesh {
         options: DeformOptions<'_>,
     ) -> Result<(), DeformError> {
         let mut control = options.control;
+        if self.vertex_count() == 0 {
+            return Err(DeformError::Empty);
+        }
         let mut moved = self.positions.clone();
         let order = self.vertices.in_user_order();
         for (i, &v) in order.iter().enumerate() {

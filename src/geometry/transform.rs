@@ -26,6 +26,9 @@ pub enum TransformError {
     /// The last row of a 4x4 matrix is not `0 0 0 1`: the map is projective.
     #[error("the last row of the matrix is {0:?}, not 0 0 0 1")]
     NotAffine([f64; 4]),
+    /// The mesh has no vertices.
+    #[error("there are no vertices")]
+    Empty,
     /// A vertex would move beyond the largest number.
     #[error("{0:?} would leave the range of numbers")]
     OutOfRange(VertexKey),
@@ -115,7 +118,8 @@ impl Mesh {
     /// Adds a vector to every position. O(vertices).
     ///
     /// # Errors
-    /// [`TransformError`] on a vector that is not finite, or a vertex that would leave the range of numbers.
+    /// [`TransformError`] on a vector that is not finite, a mesh without vertices, or a vertex that would leave the range
+    /// of numbers.
     ///
     /// # Examples
     /// ```
@@ -135,8 +139,8 @@ impl Mesh {
     /// with it: the volume goes with the cube of the factor's size. O(vertices), or O(elements) if it mirrors.
     ///
     /// # Errors
-    /// [`TransformError`] on a factor of zero, an argument that is not finite, or a vertex that would leave the range
-    /// of numbers.
+    /// [`TransformError`] on a factor of zero, an argument that is not finite, a mesh without vertices, or a vertex that
+    /// would leave the range of numbers.
     ///
     /// # Examples
     /// ```
@@ -189,8 +193,8 @@ impl Mesh {
     /// (Rodrigues). Multiples of 90 degrees about the coordinate axes are exact. O(vertices).
     ///
     /// # Errors
-    /// [`TransformError`] on an axis without direction, an argument that is not finite, or a vertex that would leave
-    /// the range of numbers.
+    /// [`TransformError`] on an axis without direction, an argument that is not finite, a mesh without vertices, or a
+    /// vertex that would leave the range of numbers.
     ///
     /// # Examples
     /// ```
@@ -216,7 +220,8 @@ impl Mesh {
     /// keep their lengths. O(vertices), or O(elements) if it mirrors.
     ///
     /// # Errors
-    /// [`TransformError`] on a map that is singular or not finite, or a vertex that would leave the range of numbers.
+    /// [`TransformError`] on a map that is singular or not finite, a mesh without vertices, or a vertex that would leave
+    /// the range of numbers.
     ///
     /// # Examples
     /// ```
@@ -263,6 +268,9 @@ impl Mesh {
 
     /// Moves every vertex, turns carried normals, and reverses the winding of a map that mirrors.
     fn map(&mut self, at: impl Fn(DVec3) -> DVec3, turn: &Turn, mirrors: bool) -> Result<(), TransformError> {
+        if self.vertex_count() == 0 {
+            return Err(TransformError::Empty);
+        }
         let moved: Vec<DVec3> = self.positions.iter().map(|&p| at(p)).collect();
         self.replace_positions(moved)?;
         if mirrors {

@@ -2,7 +2,8 @@
 //! hold only triangles.
 //!
 //! The rule reads the polygon from its lowest vertex towards the lower neighbour, so it does not depend on the first
-//! corner, and the reversed polygon gives the same triangles reversed. Ears are clipped in the plane of the polygon's
+//! corner, and the reversed polygon gives the same triangles reversed. Of the diagonals of a quad that are as long but for
+//! rounding it takes that from the lowest vertex. Ears are clipped in the plane of the polygon's
 //! area vector (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975), tested against reflex corners
 //! only, which lie in a grid. A polygon that crosses itself or has no area still gives `n - 2` triangles.
 
@@ -135,7 +136,8 @@ impl Triangulator {
 }
 
 /// Whether a quad is cut from corner 0 to corner 2: the cut that leaves two triangles on the quad's side, or of two such
-/// the shorter.
+/// the shorter. Of two that are as long but for rounding it is the first: how a quad is cut must not depend on where it is
+/// moved and turned.
 fn first_diagonal([a, b, c, d]: [DVec3; 4]) -> bool {
     let normal = direction(double_area_vector([a, b, c, d].into_iter()));
     let noise = noise([a, b, c, d].into_iter());
@@ -143,7 +145,7 @@ fn first_diagonal([a, b, c, d]: [DVec3; 4]) -> bool {
         (q - p).cross(r - p).dot(normal) > noise * p.distance(q).max(q.distance(r)).max(r.distance(p))
     };
     let (ac, bd) = (up(a, b, c) && up(a, c, d), up(a, b, d) && up(b, c, d));
-    if ac == bd { a.distance_squared(c) <= b.distance_squared(d) } else { ac }
+    if ac == bd { a.distance(c) <= b.distance(d) * (1.0 + 1e-12) + noise } else { ac }
 }
 
 /// How far rounding may move points, with some room for projecting them.
@@ -262,6 +264,27 @@ mod tests {
         for turn in 0..4u32 {
             let corners = [0, 1, 2, 3].map(|i| (i + turn) % 4);
             assert!((area(&dart, &cut(&dart, &corners)) - 1.5).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_twisted_square_is_cut_alike_however_it_is_moved_and_turned() {
+        let twisted = [dvec3(1., 0., 1.), dvec3(0., 1., -1.), dvec3(-1., 0., 1.), dvec3(0., -1., -1.)];
+        for turn in 0..4u32 {
+            let corners = [0, 1, 2, 3].map(|i| (i + turn) % 4);
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z, dvec3(1., 2., 3.), dvec3(-3., 1., 0.5)] {
+                for step in 0..100 {
+                    let rotation = glam::DQuat::from_axis_angle(axis.normalize(), f64::from(step) * 0.37);
+                    for offset in [0.0, 1.0, 1e6] {
+                        let moved = twisted.map(|p| rotation * (p * 0.3) + DVec3::splat(offset));
+                        assert_eq!(
+                            normalised(cut(&moved, &corners), false),
+                            [[0, 1, 2], [0, 2, 3]],
+                            "{turn} {axis} {step} {offset}"
+                        );
+                    }
+                }
+            }
         }
     }
 

@@ -9,9 +9,9 @@ use glam::DVec3;
 /// Which edges count as features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeatureOptions {
-    /// An edge is sharp if its [`dihedral_angle`](Mesh::dihedral_angle) is greater than this, either way; in radians.
-    /// With NaN none is.
-    pub angle: f64,
+    /// An edge is sharp if its [`dihedral_angle`](Mesh::dihedral_angle) is greater than this, either way. With NaN
+    /// none is.
+    pub degrees: f64,
     /// Whether boundary edges count too.
     pub boundary: bool,
 }
@@ -27,7 +27,7 @@ impl Mesh {
     /// # let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &faces)?)?;
     /// // A tetrahedron with three right angles.
-    /// let options = FeatureOptions { angle: 100f64.to_radians(), boundary: false };
+    /// let options = FeatureOptions { degrees: 100.0, boundary: false };
     /// assert_eq!(mesh.feature_edges(options).count(), 3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -50,7 +50,7 @@ impl Mesh {
     /// # let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &faces)?)?;
     /// // A tetrahedron with three right angles: the other three edges lie around one face.
-    /// let options = FeatureOptions { angle: 100f64.to_radians(), boundary: false };
+    /// let options = FeatureOptions { degrees: 100.0, boundary: false };
     /// let paths = mesh.feature_paths(options);
     /// assert_eq!((paths.len(), paths[0].halfedges.len(), paths[0].closed), (1, 3, true));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -91,7 +91,7 @@ impl Mesh {
             if self.face[2 * e as usize] == NONE || self.face[2 * e as usize + 1] == NONE {
                 return options.boundary;
             }
-            self.turn_at(2 * e, |f| normals[f as usize]).is_some_and(|turn| is_sharp(turn, options.angle))
+            self.turn_at(2 * e, |f| normals[f as usize]).is_some_and(|turn| is_sharp(turn, options.degrees))
         };
         self.edges.live().filter(is_feature)
     }

@@ -10,8 +10,8 @@ impl Mesh {
         /// The smooth region of a face: the faces that can be reached across edges that are not sharp, each once,
         /// breadth-first; the face itself comes first.
         ///
-        /// An edge is sharp if its [`dihedral_angle`](Self::dihedral_angle) is greater than `angle` in radians,
-        /// either way: exactly the edges that [`feature_edges`](Self::feature_edges) lists. Costs the corners of what
+        /// An edge is sharp if its [`dihedral_angle`](Self::dihedral_angle) is greater than `degrees`, either
+        /// way: exactly the edges that [`feature_edges`](Self::feature_edges) lists. Costs the corners of what
         /// it has reached.
         ///
         /// # Examples
@@ -22,16 +22,16 @@ impl Mesh {
         /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &faces)?)?;
         /// // A tetrahedron with three right angles.
         /// let f = mesh.faces().next().unwrap();
-        /// assert_eq!(mesh.smooth_region(f, 1.0).count(), 1);
-        /// assert_eq!(mesh.smooth_region(f, 1.6).count(), 3);
+        /// assert_eq!(mesh.smooth_region(f, 60.0).count(), 1);
+        /// assert_eq!(mesh.smooth_region(f, 91.0).count(), 3);
         /// # Ok::<(), Box<dyn std::error::Error>>(())
         /// ```
-        smooth_region, get_smooth_region(self, f: FaceKey => face_slot, angle: f64)
+        smooth_region, get_smooth_region(self, f: FaceKey => face_slot, degrees: f64)
             -> impl Iterator<Item = FaceKey>
         {
             let mut normals = BySlot::default();
             let mut normal = move |f| *normals.entry(f).or_insert_with(|| self.normal_of_face(f));
-            let smooth = move |h| self.turn_at(h, &mut normal).is_none_or(|turn| !is_sharp(turn, angle));
+            let smooth = move |h| self.turn_at(h, &mut normal).is_none_or(|turn| !is_sharp(turn, degrees));
             self.flood_faces(f, u32::MAX, smooth).map(|(f, _)| self.faces.key(f))
         }
     }
@@ -113,6 +113,6 @@ impl Mesh {
 }
 
 /// Whether a dihedral angle counts as sharp.
-pub(super) fn is_sharp(turn: f64, angle: f64) -> bool {
-    turn.abs() > angle
+pub(super) fn is_sharp(turn: f64, degrees: f64) -> bool {
+    turn.abs().to_degrees() > degrees
 }

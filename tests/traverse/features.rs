@@ -96,7 +96,7 @@ fn naive_features(mesh: &Mesh, options: FeatureOptions) -> BTreeSet<EdgeKey> {
     let is_feature = |&e: &EdgeKey| {
         let h = mesh.edge_halfedge(e);
         match (normal(h), normal(mesh.twin(h))) {
-            (Some(a), Some(b)) => a.dot(b).clamp(-1.0, 1.0).acos() > options.angle,
+            (Some(a), Some(b)) => a.dot(b).clamp(-1.0, 1.0).acos().to_degrees() > options.degrees,
             _ => options.boundary,
         }
     };
@@ -136,9 +136,9 @@ pub(crate) fn check_features(mesh: &Mesh, options: FeatureOptions) {
 #[test]
 fn feature_paths_hold_every_feature_edge_once_and_end_at_corners() {
     for mesh in all() {
-        for angle in [0.0001, 0.2, 1.0, 1.5, 3.5] {
+        for degrees in [0.005, 12.0, 60.0, 85.0, 200.0] {
             for boundary in [false, true] {
-                check_features(&mesh, FeatureOptions { angle, boundary });
+                check_features(&mesh, FeatureOptions { degrees, boundary });
             }
         }
     }
@@ -146,7 +146,7 @@ fn feature_paths_hold_every_feature_edge_once_and_end_at_corners() {
 
 #[test]
 fn the_features_of_a_cylinder_are_its_two_rims_and_of_a_cube_its_edges() {
-    let options = FeatureOptions { angle: 1.0, boundary: false };
+    let options = FeatureOptions { degrees: 60.0, boundary: false };
     let rims = mesh(&cylinder(12)).feature_paths(options);
     assert_eq!(rims.iter().map(|p| (p.halfedges.len(), p.closed)).collect::<Vec<_>>(), [(12, true); 2]);
     let cube = mesh(&cube()).feature_paths(options);
@@ -165,7 +165,7 @@ fn a_path_back_to_its_own_corner_is_not_closed() {
     };
     let points = std::iter::once(DVec3::ZERO).chain((0..n).map(rim)).collect();
     let mesh = mesh(&pool(points, (0..n).map(|i| vec![0, 1 + i, 1 + (i + 1) % n]).collect()));
-    let paths = mesh.feature_paths(FeatureOptions { angle: 0.5, boundary: true });
+    let paths = mesh.feature_paths(FeatureOptions { degrees: 30.0, boundary: true });
     let found: Vec<_> = paths.iter().map(|p| (p.halfedges.len(), p.closed)).collect();
     assert_eq!(found, [(1, false), (n as usize, false)]);
     let outline = &paths[1].halfedges;

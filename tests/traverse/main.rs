@@ -144,19 +144,19 @@ proptest! {
     #[test]
     fn traversals_of_any_surface_equal_their_naive_twins(
         mesh in surfaces(), a in any::<prop::sample::Index>(), b in any::<prop::sample::Index>(), k in 0u32..6,
-        angle in 0.0..2.0f64, boundary in any::<bool>(),
+        degrees in 0.0..115.0f64, boundary in any::<bool>(),
     ) {
         let (v, f): (Vec<_>, Vec<_>) = (mesh.vertices().collect(), mesh.faces().collect());
         let (a, b) = (v[a.index(v.len())], v[b.index(v.len())]);
         check_rings(mesh.k_ring(a, k).collect(), &naive_distances(&vertex_pairs(&mesh, |_| 1.0), a), k);
         check_path(&mesh, a, b, |h| length(&mesh, h));
-        check_features(&mesh, FeatureOptions { angle, boundary });
+        check_features(&mesh, FeatureOptions { degrees, boundary });
         let mut seen = BTreeSet::new();
         for &f in &f {
-            let region: Vec<_> = mesh.smooth_region(f, angle).collect();
+            let region: Vec<_> = mesh.smooth_region(f, degrees).collect();
             if seen.insert(*region.iter().min().expect("a face")) {
                 let loops = mesh.region_boundary(region.iter().copied());
-                let sharp: BTreeSet<_> = mesh.feature_edges(FeatureOptions { angle, boundary: true }).collect();
+                let sharp: BTreeSet<_> = mesh.feature_edges(FeatureOptions { degrees, boundary: true }).collect();
                 prop_assert!(loops.iter().flatten().all(|&h| sharp.contains(&mesh.edge(h))));
             }
         }

@@ -20,8 +20,8 @@ pub(super) fn weld(session: &mut Session, args: &WeldCommand) -> Result<Answer, 
     import_edit_write(session, &args.change, |mesh| {
         let outcome = progress::shown(|hook| {
             mesh.weld(WeldOptions { tolerance: args.tolerance, control: Control::new(hook) })
-        })?;
-        Ok(taken(mesh, outcome))
+        });
+        Ok(taken(mesh, outcome.map_err(Failure::refused)?))
     })
 }
 

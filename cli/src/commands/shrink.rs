@@ -21,10 +21,9 @@ pub(super) fn reduce(session: &mut Session, args: &Reduce) -> Result<Answer, Fai
     not_carried.iter().for_each(|line| session.say(line));
     let account = session.timed(Phase::Run, || {
         progress::shown(|hook| {
-            let sharp_angle = args.sharp.map(f64::to_radians);
             mesh.reduce(ReduceOptions {
                 target,
-                sharp_angle,
+                sharp_degrees: args.sharp,
                 control: Control::new(hook),
                 ..Default::default()
             })

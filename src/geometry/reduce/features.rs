@@ -1,9 +1,9 @@
 //! What must be kept: boundaries, seams, borders of groups, sharp edges, and what the caller locked.
 
-use super::ReduceOptions;
 use super::copy::Copy;
 use super::part::Part;
 use super::quadric::Planes;
+use super::{ReduceError, ReduceOptions};
 use crate::column::Kind;
 use crate::{FeatureOptions, Mesh};
 use glam::DVec3;
@@ -23,7 +23,11 @@ pub(super) enum Hold {
 impl Copy {
     /// Marks feature edges and holds the vertices at them.
     pub(super) fn mark(&mut self, mesh: &Mesh, options: &ReduceOptions<'_>) {
-        let is_sharp = sharp_edges(mesh, options.sharp_angle);
+        let is_sharp = sharp_edges(mesh, options.sharp_degrees);
+        let mut locked_edges = vec![false; mesh.edges.slot_count()];
+        for e in options.locked_edges.iter().filter_map(|&e| mesh.edge_slot(e)) {
+            locked_edges[e as usize] = true;
+        }
         let mut count = vec![0u8; self.spots.len()];
         let mut locked = vec![false; self.spots.len()];
         for i in 0..self.edges.len() {
@@ -31,7 +35,7 @@ impl Copy {
             let sides = [2 * e as usize, 2 * e as usize + 1];
             let [left, right] = self.faces[i];
             let inner = sides.iter().all(|&h| mesh.face[h] != crate::matching::NONE);
-            let is_locked = options.locked_edges.is_some_and(|is_locked| is_locked(mesh.edges.key(e)));
+            let is_locked = locked_edges[e as usize];
             let is_feature = !inner
                 || is_locked
                 || is_sharp.get(e as usize).is_some_and(|&sharp| sharp)
@@ -45,14 +49,13 @@ impl Copy {
                 }
             }
         }
+        let mut locked_vertices = vec![false; mesh.vertices.slot_count()];
+        for v in options.locked_vertices.iter().filter_map(|&v| mesh.vertex_slot(v)) {
+            locked_vertices[v as usize] = true;
+        }
         for (i, spot) in self.spots.iter_mut().enumerate() {
-            let is_locked = || {
-                options
-                    .locked_vertices
-                    .is_some_and(|is_locked| is_locked(mesh.vertices.key(self.vertex_slot[i])))
-            };
             spot.set_hold(match count[i] {
-                _ if locked[i] || is_locked() => Hold::Fixed,
+                _ if locked[i] || locked_vertices[self.vertex_slot[i] as usize] => Hold::Fixed,
                 0 => Hold::Free,
                 2 => Hold::Line,
                 _ => Hold::Fixed,
@@ -153,10 +156,10 @@ pub(super) fn plane(double_area: DVec3) -> Planes {
 }
 
 /// By slot; empty if none is asked for.
-fn sharp_edges(mesh: &Mesh, angle: Option<f64>) -> Vec<bool> {
-    let Some(angle) = angle else { return Vec::new() };
+fn sharp_edges(mesh: &Mesh, degrees: Option<f64>) -> Vec<bool> {
+    let Some(degrees) = degrees else { return Vec::new() };
     let mut sharp = vec![false; mesh.edges.slot_count()];
-    for e in mesh.feature_edges(FeatureOptions { angle, boundary: false }) {
+    for e in mesh.feature_edges(FeatureOptions { degrees, boundary: false }) {
         if let Some(e) = mesh.edge_slot(e) {
             sharp[e as usize] = true;
         }
@@ -165,6 +168,17 @@ fn sharp_edges(mesh: &Mesh, angle: Option<f64>) -> Vec<bool> {
 }
 
 impl Mesh {
+    /// Whether what is locked is there.
+    pub(super) fn check_locks(&self, options: &ReduceOptions<'_>) -> Result<(), ReduceError> {
+        let dead_vertex = options.locked_vertices.iter().find(|&&v| !self.contains_vertex(v));
+        let dead_edge = options.locked_edges.iter().find(|&&e| !self.contains_edge(e));
+        match (dead_vertex, dead_edge) {
+            (Some(&v), _) => Err(ReduceError::MissingVertex(v)),
+            (_, Some(&e)) => Err(ReduceError::MissingEdge(e)),
+            (None, None) => Ok(()),
+        }
+    }
+
     /// Whether any column on corners, normals aside, differs across an inner edge.
     fn is_seam_of_any(&self, e: u32) -> bool {
         let normals = self.carried.corner_normals.map(|c| c.index);

@@ -40,31 +40,29 @@ pub enum ReduceTarget {
     MaxError(f64),
 }
 
-/// Says of an element whether it is locked.
-pub type Lock<'a, K> = &'a dyn Fn(K) -> bool;
-
 /// How a mesh is reduced.
 ///
 /// *Feature edges* are boundary edges, seams, borders of groups, sharp edges and locked edges. A vertex with two of them
 /// moves along the line they make; one with another number of them stays where it is.
+#[derive(Debug)]
 pub struct ReduceOptions<'a> {
     /// How far.
     pub target: ReduceTarget,
     /// How much the planes that stand upright on feature edges count, beside those of faces as large as the edge's square.
     pub line_weight: f64,
-    /// Edges at which the surface turns by more than this are features; in radians. Without, sharp edges are kept as far
-    /// as the error tells.
-    pub sharp_angle: Option<f64>,
+    /// Edges at which the normals of the two faces differ by more than this are features. Without, sharp edges are kept
+    /// as far as the error tells.
+    pub sharp_degrees: Option<f64>,
     /// Whether edges at which corner data differs (texture coordinates, the caller's columns; not normals) are features.
     pub keep_seams: bool,
     /// Whether edges between faces of different groups are features.
     pub keep_groups: bool,
     /// Vertices that stay, and stay where they are.
-    pub locked_vertices: Option<Lock<'a, VertexKey>>,
+    pub locked_vertices: &'a [VertexKey],
     /// Edges that stay as they are, with both their ends.
-    pub locked_edges: Option<Lock<'a, EdgeKey>>,
-    /// No collapse turns a face by more than this; in radians, up to π/2.
-    pub max_turn: f64,
+    pub locked_edges: &'a [EdgeKey],
+    /// No collapse turns a face by more than this, which is at most 90.
+    pub max_turn_degrees: f64,
     /// No collapse leaves a triangle whose shape is below this, unless it was so before: 1 is equilateral, 0 has no area.
     pub min_shape: f64,
     /// Progress and cancelling.
@@ -77,32 +75,15 @@ impl Default for ReduceOptions<'_> {
         Self {
             target: ReduceTarget::Ratio(0.5),
             line_weight: 10.0,
-            sharp_angle: None,
+            sharp_degrees: None,
             keep_seams: true,
             keep_groups: true,
-            locked_vertices: None,
-            locked_edges: None,
-            max_turn: 78f64.to_radians(),
+            locked_vertices: &[],
+            locked_edges: &[],
+            max_turn_degrees: 78.0,
             min_shape: 1e-4,
             control: Control::none(),
         }
-    }
-}
-
-impl fmt::Debug for ReduceOptions<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ReduceOptions")
-            .field("target", &self.target)
-            .field("line_weight", &self.line_weight)
-            .field("sharp_angle", &self.sharp_angle)
-            .field("keep_seams", &self.keep_seams)
-            .field("keep_groups", &self.keep_groups)
-            .field("locked_vertices", &self.locked_vertices.is_some())
-            .field("locked_edges", &self.locked_edges.is_some())
-            .field("max_turn", &self.max_turn)
-            .field("min_shape", &self.min_shape)
-            .field("control", &self.control)
-            .finish()
     }
 }
 
@@ -130,6 +111,12 @@ pub enum ReduceError {
         /// What it was.
         value: f64,
     },
+    /// A locked vertex is not there.
+    #[error("{0:?} is not a vertex of the mesh")]
+    MissingVertex(VertexKey),
+    /// A locked edge is not there.
+    #[error("{0:?} is not an edge of the mesh")]
+    MissingEdge(EdgeKey),
     /// The mesh has more edges than a reduction can number.
     #[error("{edges} edges are more than {limit}")]
     TooLarge {
@@ -240,12 +227,12 @@ impl ReduceOptions<'_> {
         let in_range = |option, value: f64, is_fine: bool| {
             if is_fine { Ok(()) } else { Err(ReduceError::BadOption { option, value }) }
         };
-        let (weight, turn, shape) = (self.line_weight, self.max_turn, self.min_shape);
+        let (weight, turn, shape) = (self.line_weight, self.max_turn_degrees, self.min_shape);
         in_range("line_weight", weight, (0.0..=1e6).contains(&weight))?;
-        in_range("max_turn", turn, turn > 0.0 && turn <= std::f64::consts::FRAC_PI_2)?;
+        in_range("max_turn_degrees", turn, turn > 0.0 && turn <= 90.0)?;
         in_range("min_shape", shape, (0.0..1.0).contains(&shape))?;
-        if let Some(angle) = self.sharp_angle {
-            in_range("sharp_angle", angle, angle >= 0.0)?;
+        if let Some(degrees) = self.sharp_degrees {
+            in_range("sharp_degrees", degrees, (0.0..=180.0).contains(&degrees))?;
         }
         match self.target {
             ReduceTarget::Faces(0) => Err(ReduceError::NoFaces),
@@ -307,6 +294,7 @@ impl Mesh {
         if before == 0 {
             return Err(ReduceError::Empty);
         }
+        self.check_locks(&options)?;
         options.control.report("copy", 0.0)?;
         let nothing = Reduced {
             faces_before: before,
@@ -350,7 +338,7 @@ impl Mesh {
         copy.sum_planes(options.line_weight, goal.error.is_finite());
         options.control.report("collapse", 0.1)?;
         let guards = Guards {
-            turn: options.max_turn.cos().powi(2),
+            turn: options.max_turn_degrees.to_radians().cos().powi(2),
             shape: options.min_shape,
             error: goal.error / copy.frame.length(1.0),
             line_weight: options.line_weight,

@@ -52,7 +52,7 @@ impl Spot {
     #[inline]
     pub(super) fn set_valence(&mut self, valence: u32) {
         if self.valence() < VERY_MANY {
-            self.state = self.state % ONE_EDGE | valence.min(VERY_MANY) * ONE_EDGE;
+            self.state = (self.state % ONE_EDGE) | (valence.min(VERY_MANY) * ONE_EDGE);
         }
     }
 

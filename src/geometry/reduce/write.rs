@@ -63,18 +63,17 @@ impl Mesh {
             if copy.edges[i].is_dead() {
                 continue;
             }
-            let ends = copy.edges[i].ends();
-            for side in 0..2 {
-                let (h, at) = (2 * i as u32 + side as u32, copy.slot(2 * i as u32 + side as u32));
-                let (next, v) = (copy.slot(copy.edges[i].next(side)), copy.vertex_slot[ends[side] as usize]);
-                let (f, at) = (copy.faces[i][side], at as usize);
+            for (side, end) in copy.edges[i].ends().into_iter().enumerate() {
+                let h = copy.slot(2 * i as u32 + side as u32);
+                let (next, v) = (copy.slot(copy.edges[i].next(side)), copy.vertex_slot[end as usize]);
+                let (f, at) = (copy.faces[i][side], h as usize);
                 self.next[at] = next;
-                self.prev[next as usize] = copy.slot(h);
+                self.prev[next as usize] = h;
                 self.origin[at] = v;
                 self.face[at] = f;
                 match is_left.get_mut(f as usize) {
                     Some(left) => *left = true,
-                    None => self.vertex_halfedge[v as usize] = at as u32,
+                    None => self.vertex_halfedge[v as usize] = h,
                 }
             }
         }

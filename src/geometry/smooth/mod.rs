@@ -84,6 +84,9 @@ impl Default for SmoothOptions<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SmoothError {
+    /// The mesh has no vertices.
+    #[error("there are no vertices")]
+    Empty,
     /// `lambda` is not in `(0, 1]`, or for an implicit step not in `(0, 10000]`.
     #[error("a lambda of {0} is not above 0 and at most 1, or at most 10000 for an implicit step")]
     BadLambda(f64),
@@ -112,7 +115,7 @@ impl Mesh {
     /// [compute](Self::compute_normals) them anew. O(edges) an iteration.
     ///
     /// # Errors
-    /// [`SmoothError`]: `lambda` or `mu` out of range, a dead key, a vertex out of range; when cancelled.
+    /// [`SmoothError`]: `lambda` or `mu` out of range, a mesh without vertices, a dead key, a vertex out of range; when cancelled.
     ///
     /// # Examples
     /// ```
@@ -140,6 +143,9 @@ impl Mesh {
             && !(mu < -lambda && mu.is_finite())
         {
             return Err(SmoothError::BadMu { lambda, mu });
+        }
+        if self.vertex_count() == 0 {
+            return Err(SmoothError::Empty);
         }
         let rules = Rules::new(self, boundary, locked)?;
         // Brought to about one, so that neither sums nor cross products overflow.

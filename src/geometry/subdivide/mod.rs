@@ -11,7 +11,7 @@ mod refine;
 mod sqrt3;
 
 use super::unit_scale;
-use super::weld::BadAngle;
+use super::weld::{BadAngle, in_range};
 use crate::build::lay_out;
 use crate::column::{Columns, Kind};
 use crate::report::{Maps, Outcome, Report, Step, StepSummary};
@@ -86,6 +86,9 @@ impl Default for SubdivideOptions<'_> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SubdivideError {
+    /// The mesh has no faces.
+    #[error("there are no faces")]
+    Empty,
     /// A face to be subdivided is not there.
     #[error("{0:?} is not a face of the mesh")]
     MissingFace(FaceKey),
@@ -172,7 +175,7 @@ impl Mesh {
     /// vertex; at a seam, that side goes on beyond the edge as if mirrored, and the seam runs in a zigzag.
     ///
     /// # Errors
-    /// [`SubdivideError`]: dead keys, options the scheme has no rule for, more faces than allowed, faces that cannot be
+    /// [`SubdivideError`]: dead keys, options the scheme has no rule for, a mesh without faces, more faces than allowed, faces that cannot be
     /// cut into triangles; when cancelled.
     ///
     /// # Examples
@@ -199,8 +202,13 @@ impl Mesh {
             Scheme::Midpoint | Scheme::Sqrt3 if has_creases => return Err(SubdivideError::NoCreases(scheme)),
             _ => {}
         }
+        if let Some(degrees) = options.crease_degrees {
+            in_range(degrees)?;
+        }
+        if self.face_count() == 0 {
+            return Err(SubdivideError::Empty);
+        }
         control.report("subdivide", 0.0)?;
-        let levels = if self.face_count() == 0 { 0 } else { levels };
         let needs_triangles = levels > 0 && matches!(scheme, Scheme::Loop | Scheme::Sqrt3);
         let mut columns = Columns::in_order(self, |_, _| true);
         let prepared = Prepared::new(self, needs_triangles, &mut columns)?;

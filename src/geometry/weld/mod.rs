@@ -4,7 +4,7 @@ mod columns;
 
 use super::normals::double_area_vector;
 use super::{direction, unit_scale};
-use crate::cleanup::{CleanError, CleanOptions, Weld, clean_tracked};
+use crate::cleanup::{CleanError, CleanOptions, Names, Weld, clean_tracked};
 use crate::matching::NONE;
 use crate::report::{Element, Kind, Maps, Outcome, Record, Relation, Report, Step, StepSummary};
 use crate::{BuildError, Cancelled, Control, EdgeKey, IndexedMesh, Mesh, Polygons};
@@ -39,10 +39,46 @@ impl Default for UnweldOptions<'_> {
 #[error("an angle of {0} degrees between two faces makes no sense")]
 pub struct BadAngle(pub f64);
 
+/// Nothing if the angle is one.
+pub(super) fn in_range(degrees: f64) -> Result<(), BadAngle> {
+    if (0.0..=180.0).contains(&degrees) { Ok(()) } else { Err(BadAngle(degrees)) }
+}
+
+/// Why a mesh was not welded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WeldError {
+    /// The mesh has no vertices.
+    #[error("there are no vertices")]
+    Empty,
+    /// The tolerance is negative, NaN or infinite.
+    #[error("a weld tolerance of {0} makes no sense")]
+    BadTolerance(f64),
+    /// The result was not a manifold after all. This is a bug of this crate; please report it with the input.
+    #[error("bug in the weld: {0}")]
+    Bug(CleanError),
+    /// The hook said stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<CleanError> for WeldError {
+    fn from(error: CleanError) -> Self {
+        match error {
+            CleanError::BadTolerance(tolerance) => Self::BadTolerance(tolerance),
+            CleanError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Bug(error),
+        }
+    }
+}
+
 /// Why a mesh was not unwelded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UnweldError {
+    /// The mesh has no vertices.
+    #[error("there are no vertices")]
+    Empty,
     /// The angle is not within 0 to 180 degrees.
     #[error(transparent)]
     BadAngle(#[from] BadAngle),
@@ -54,6 +90,33 @@ pub enum UnweldError {
     Cancelled(#[from] Cancelled),
 }
 
+/// How often a weld goes over its result; three rounds are many.
+const MOST_ROUNDS: i32 = 64;
+
+fn is_split(report: &Report) -> bool {
+    report.steps.iter().any(|s| s.step == Step::SplitVertices && s.changed > 0)
+}
+
+/// What a weld makes less of: places, corners, boundary edges, vertices, and what the number of faces lacks to the largest;
+/// the first that differs counts. A round after which there is not less is not worth it, so there are finitely many, and
+/// none after the last. What lies in the middle of an
+/// edge between two faces is not counted: a weld may put vertices there to part edges.
+fn extent(mesh: &Mesh) -> [usize; 5] {
+    let is_open = |h: u32| mesh.face[h as usize] == NONE;
+    let mut ends = vec![0u32; mesh.vertices.slot_count()];
+    let halfedges = || mesh.edges.live().flat_map(|e| [2 * e, 2 * e + 1]);
+    halfedges().for_each(|h| ends[mesh.origin[h as usize] as usize] += 1 + u32::from(is_open(h)));
+    let counts = |v: u32| ends[v as usize] != 2;
+    let corners = halfedges().filter(|&h| !is_open(h) && counts(mesh.origin[h as usize])).count();
+    let boundary = halfedges().filter(|&h| is_open(h)).count();
+    // Adding zero makes one of both zeros.
+    let place = |v: u32| (mesh.positions[v as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let mut places: Vec<[u64; 3]> = mesh.vertices.live().filter(|&v| counts(v)).map(place).collect();
+    places.sort_unstable();
+    places.dedup();
+    [places.len(), corners, boundary, mesh.vertex_count(), usize::MAX - mesh.face_count()]
+}
+
 impl Mesh {
     /// Merges vertices: each joins the lowest vertex kept so far that is nearer than the tolerance, and is kept, where
     /// it is, if there is none. Kept vertices stay at least a tolerance apart, so nothing drifts along a chain.
@@ -61,9 +124,12 @@ impl Mesh {
     /// This is [`clean`](crate::cleanup::clean) on the mesh: what the merges fold or double is repaired on record, faces that
     /// no longer fit
     /// together are paired or parted, and a merge that would pinch the surface is taken back. The maps lead from the
-    /// numbering of [`to_indexed`](Self::to_indexed) to the result's. If all merges are taken back, nothing is on record.
-    /// Welding again changes nothing, but where surfaces cross so often that merges were taken back to make room for
-    /// others. Linear time.
+    /// numbering of [`to_indexed`](Self::to_indexed) to the result's.
+    ///
+    /// Where merges were taken back, the result is welded again, as long as that leaves fewer places where vertices are, or as many and
+    /// fewer corners, or else boundary edges, or else vertices, or else cuts a face. A weld that does none of that is not
+    /// done at all, and nothing is on record. So welding again with the same tolerance changes nothing. Linear time, for each of a few
+    /// rounds where merges were taken back.
     ///
     /// User columns come along under their keys, each by its [`Rule`](crate::Rule). A vertex that merged others has its own
     /// value at weight 1 and theirs at 0, as it stays where it is: `keep` and `interpolate` give its own, `average` the
@@ -71,7 +137,7 @@ impl Mesh {
     /// the parts of a face that was cut have the rule's answer to a split of it.
     ///
     /// # Errors
-    /// [`CleanError::BadTolerance`] on a tolerance that is negative, NaN or infinite; when cancelled.
+    /// [`WeldError`] on a tolerance that is negative, NaN or infinite or a mesh without vertices; when cancelled.
     ///
     /// # Examples
     /// ```
@@ -83,15 +149,57 @@ impl Mesh {
     /// assert_eq!(welded.maps.vertices.new_of(3), &[1]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn weld(&self, options: WeldOptions<'_>) -> Result<Outcome<Mesh>, CleanError> {
-        let WeldOptions { tolerance, control } = options;
+    pub fn weld(&self, options: WeldOptions<'_>) -> Result<Outcome<Mesh>, WeldError> {
+        let WeldOptions { tolerance, mut control } = options;
+        if !(tolerance >= 0.0 && tolerance.is_finite()) {
+            return Err(WeldError::BadTolerance(tolerance));
+        }
+        if self.vertex_count() == 0 {
+            return Err(WeldError::Empty);
+        }
+        let Some((mut all, mut names)) = self.weld_once(tolerance, control.part(0.0, 0.9))? else {
+            return self.unwelded(control.part(0.9, 1.0));
+        };
+        for round in 1..MOST_ROUNDS {
+            // Without splits the kept vertices are all there is, and lie apart.
+            if !is_split(&all.report) {
+                break;
+            }
+            let share = |round: i32| 1.0 - 0.1 * 0.5f64.powi(round - 1);
+            let control = control.part(share(round), share(round + 1));
+            let Some((next, sources)) = all.value.weld_once(tolerance, control)? else { break };
+            let records = next.report.records.into_iter();
+            all.report.records.extend(records.map(|r| Record { element: names.of(r.element), ..r }));
+            all.report.records.sort_by_key(|r| r.step);
+            next.report.steps.into_iter().for_each(|step| all.report.add_step(step));
+            // The one starts where the other ended.
+            all.maps = all.maps.then(&next.maps).unwrap_or_default();
+            all.value = next.value;
+            names = names.then(&sources);
+        }
+        Ok(all)
+    }
+
+    /// One weld, and how its result's elements are named in this mesh; nothing if it only parts what it has merged.
+    fn weld_once(
+        &self,
+        tolerance: f64,
+        control: Control<'_>,
+    ) -> Result<Option<(Outcome<Mesh>, Names)>, WeldError> {
         let options = CleanOptions { weld: Weld::Within(tolerance), control, ..Default::default() };
         let (mut outcome, sources) = clean_tracked(&self.to_indexed().into(), options)?;
-        // Merged and parted again, it is as it was: edges that had more faces in between are nobody's concern.
-        if !outcome.report.records.is_empty() && outcome.value.to_indexed() == self.to_indexed() {
-            outcome.report.records.clear();
-            outcome.report.steps.iter_mut().for_each(|step| step.changed = 0);
+        if is_split(&outcome.report) && extent(&outcome.value) >= extent(self) {
+            return Ok(None);
         }
+        let columns = columns::welded(self, &outcome.value, &outcome.maps.vertices, &sources);
+        outcome.value.adopt_columns(columns);
+        Ok(Some((outcome, Names::new(sources.vertices, sources.faces))))
+    }
+
+    /// The account of a weld that merges nothing.
+    fn unwelded(&self, control: Control<'_>) -> Result<Outcome<Mesh>, WeldError> {
+        let options = CleanOptions { weld: Weld::None, control, ..Default::default() };
+        let (mut outcome, sources) = clean_tracked(&self.to_indexed().into(), options)?;
         let columns = columns::welded(self, &outcome.value, &outcome.maps.vertices, &sources);
         outcome.value.adopt_columns(columns);
         Ok(outcome)
@@ -109,7 +217,7 @@ impl Mesh {
     /// O(elements).
     ///
     /// # Errors
-    /// [`UnweldError`] on an angle outside 0 to 180 degrees; when cancelled.
+    /// [`UnweldError`] on an angle outside 0 to 180 degrees or a mesh without vertices; when cancelled.
     ///
     /// # Examples
     /// ```
@@ -125,6 +233,10 @@ impl Mesh {
     /// ```
     pub fn unweld(&self, options: UnweldOptions<'_>) -> Result<Outcome<Mesh>, UnweldError> {
         let UnweldOptions { degrees, mut control } = options;
+        in_range(degrees)?;
+        if self.vertex_count() == 0 {
+            return Err(UnweldError::Empty);
+        }
         control.report("find sharp edges", 0.0)?;
         let is_sharp = self.sharp_slots(degrees)?;
         control.report("part fans", 0.3)?;
@@ -166,9 +278,7 @@ impl Mesh {
 
     /// By edge slot.
     fn sharp_slots(&self, degrees: f64) -> Result<Vec<bool>, BadAngle> {
-        if !(0.0..=180.0).contains(&degrees) {
-            return Err(BadAngle(degrees));
-        }
+        in_range(degrees)?;
         let mut normals = vec![DVec3::ZERO; self.faces.slot_count()];
         for f in self.faces.live() {
             let corners = || self.loop_slots(self.face_halfedge[f as usize]).map(|h| self.at(h));
