@@ -330,6 +330,16 @@ pub(crate) fn all_at_once(it: &mut Faulty) {
     for fault in [holes, caps, needles, t_junctions, fins, duplicate, duplicate_reversed, flip] {
         fault(it);
     }
+    for fault in [not_finite, isolated, unweld, bad_indices] {
+        fault(it);
+    }
+}
+
+/// Everything, and every corner moved a little.
+pub(crate) fn all_at_once_jittered(it: &mut Faulty) {
+    for fault in [holes, caps, needles, t_junctions, fins, duplicate, duplicate_reversed, flip] {
+        fault(it);
+    }
     not_finite(it);
     isolated(it);
     jitter_by(it, 1e-7);
