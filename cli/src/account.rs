@@ -1,6 +1,6 @@
 //! The account of a clean-up as people read it: what was wrong and where, what was done, what remains, what it came to.
 
-use crate::text::{self, counted, number};
+use crate::text::{self, counted};
 use meshwright::cleanup::{Account, Facts, Profile};
 use meshwright::glam::DVec3;
 use meshwright::{Kind, Record, Step};
@@ -52,7 +52,7 @@ pub(crate) fn told(account: &Account) -> String {
 fn merged(account: &Account) -> Option<String> {
     let weld = account.steps.iter().find(|s| s.step == Step::Weld && s.changed > 0)?;
     let how = match weld.tolerance {
-        Some(t) if t > 0.0 => format!("closer than {}", number(t)),
+        Some(t) if t > 0.0 => format!("closer than {}", short(t)),
         _ => "at equal coordinates".to_owned(),
     };
     Some(format!("{} {how}, merged", counted(weld.changed, "vertex")))
@@ -113,6 +113,7 @@ fn verdict(account: &Account) -> String {
     let state = [is(after.closed, "closed"), is(after.manifold, "manifold"), is(after.oriented, "oriented")]
         .join(", ");
     match (account.profile, account.solid) {
+        _ if after.faces == 0 => "no face is left".to_owned(),
         (Profile::Solid, true) if account.counts.contains_key(&Kind::SelfIntersection) => {
             format!("a solid ({state}, outward), but its faces pass through each other")
         }

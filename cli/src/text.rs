@@ -106,7 +106,7 @@ pub(crate) fn described(kind: Kind) -> (&'static str, &'static str) {
         Kind::LongHole => ("hole", "too long, left"),
         Kind::IsolatedVertex => ("vertex", "without a face, dropped"),
         Kind::TurnedShell => ("shell", "inside out, turned"),
-        Kind::CrossingShell => ("shell", "crossing another"),
+        Kind::CrossingShell => ("shell", "crossing another, judged by its own volume"),
         Kind::OpenSheet => ("sheet", "that cannot become a solid, left"),
         Kind::NotOrientable => ("part", "whose edges meet the wrong way round (not orientable), left"),
         Kind::OpenPart => ("part", "with holes that could not be filled, left"),

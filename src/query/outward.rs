@@ -327,7 +327,7 @@ impl Tally {
             met: Vec::new(),
             ever_met: Vec::new(),
             // Rays from life ask a few dozen each.
-            budget: 64 * triangles + (1 << 22),
+            budget: 24 * triangles + (1 << 20),
         }
     }
 

@@ -123,8 +123,14 @@ pub(crate) fn unweld(it: &mut Faulty) {
 
 /// Every corner moved a little on its own.
 pub(crate) fn jitter(it: &mut Faulty) {
+    let share = [1e-7, 1e-6, 1e-5][it.below(3)];
+    jitter_by(it, share);
+}
+
+/// Every corner moved by up to this share of the diagonal.
+fn jitter_by(it: &mut Faulty, share: f64) {
     unweld(it);
-    let by = it.diagonal * [1e-7, 1e-6, 1e-5][it.below(3)];
+    let by = it.diagonal * share;
     it.jitter = by;
     for i in 0..it.points.len() {
         let mut off = || it.noise.unit() - 0.5;
@@ -327,6 +333,17 @@ pub(crate) fn all_at_once(it: &mut Faulty) {
     for fault in [not_finite, isolated, unweld, bad_indices] {
         fault(it);
     }
+}
+
+/// Everything, and every corner moved a little.
+pub(crate) fn all_at_once_jittered(it: &mut Faulty) {
+    for fault in [holes, caps, needles, t_junctions, fins, duplicate, duplicate_reversed, flip] {
+        fault(it);
+    }
+    not_finite(it);
+    isolated(it);
+    jitter_by(it, 1e-7);
+    bad_indices(it);
 }
 
 /// The shape twice, touching itself at one vertex, which both name.

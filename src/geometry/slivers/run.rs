@@ -44,7 +44,7 @@ impl Run {
         let gauge = Gauge::new(&mesh, tolerance);
         let account = SliverAccount { tolerance, found: found.len(), ..SliverAccount::default() };
         // Some tens of times what meshes from life take.
-        let limit = 64 * (mesh.edge_count() as u64) + 512 * (found.len() as u64) + (1 << 20);
+        let limit = 64 * (mesh.edge_count() as u64) + 128 * (found.len() as u64) + (1 << 20);
         let mut run = Self {
             mesh,
             gauge,
