@@ -128,7 +128,7 @@ impl Mesh {
     ///
     /// Where merges were taken back, the result is welded again, as long as that leaves fewer places where vertices are, or as many and
     /// fewer corners, or else boundary edges, or else vertices, or else cuts a face. A weld that does none of that is not
-    /// done at all, and nothing is on record. So welding again with the same tolerance changes nothing. Linear time, for each of a few
+    /// done at all, and nothing is on record. So welding again with the same tolerance changes nothing. O(n log n), for each of a few
     /// rounds where merges were taken back.
     ///
     /// User columns come along under their keys, each by its [`Rule`](crate::Rule). A vertex that merged others has its own
