@@ -9,7 +9,6 @@ mod large;
 mod shapes;
 
 use large::riddle;
-
 use meshwright::cleanup::{CleanOptions, clean};
 use meshwright::glam::{DVec2, DVec3, dvec3};
 use meshwright::{
