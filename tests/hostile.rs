@@ -1,6 +1,7 @@
 //! Soups that are made to be slow, or that once broke clean-up: bounded work, and an account that says where it ended.
 
 #[path = "drive/clean.rs"]
+#[allow(dead_code)]
 mod drive;
 mod shapes;
 

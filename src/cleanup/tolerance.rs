@@ -35,8 +35,10 @@ pub struct ProposedTolerance {
 /// After an exact weld each naked edge is asked for the naked edge that it comes to lie on if ends are moved least. In
 /// a soup of which every corner was moved a little, these distances stop at the largest move, and then for a long while
 /// nothing follows: a tolerance is proposed where there is such a gap, below the lengths of the edges, and tried. It
-/// is taken if it folds no face, makes no new edge of three or more faces, and leaves as few naked edges as a greater
-/// one, but for one in a hundred. A file without naked edges gets 0, and so does one whose boundary is meant.
+/// is taken if it folds no more than one face in five hundred, makes no new edge of three or more faces, and leaves as few
+/// naked edges as a greater one, but for one in a hundred. Where faces do not share vertices yet, needles, fins and faces
+/// that are there twice show only in the weld: there one face in 25 may fold, and third and later faces of edges may be up
+/// to a tenth of the naked edges. A file without naked edges gets 0, and so does one whose boundary is meant.
 ///
 /// What it asks of distances: no more than a quarter of the length of the edges they join, on the average; and, unless
 /// two in five of all edges are such, a thousandth of the box's diagonal.
@@ -85,8 +87,15 @@ pub(super) fn propose(
         matching.edges.iter().filter(|e| e.second().is_none()).map(|e| e.first()).collect();
     let mut proposed =
         ProposedTolerance { naked_before: naked.len(), naked_after: naked.len(), ..Default::default() };
-    let before = (naked.len(), matching.more.len());
     let edge_count = matching.edges.len();
+    // Where faces do not share vertices yet, needles, fins and faces that are there twice show only in the weld.
+    let is_soup = naked.len() as f64 >= 0.8 * edge_count as f64;
+    let may = if is_soup {
+        Bounds { folded: polygons.len() / 25, more: matching.more.len() + naked.len() / 10 }
+    } else {
+        Bounds { folded: polygons.len() / 500, more: matching.more.len() }
+    };
+    let before = naked.len();
     drop(matching);
     if naked.len() < 2 {
         return Ok((proposed, None));
@@ -106,9 +115,9 @@ pub(super) fn propose(
         let most = gap.tolerance();
         for t in [most, most * 0.7, gap.last * 1.01, gap.last * 0.5, gap.last * 0.25] {
             proposed.tried += 1;
-            match try_weld(positions, polygons, t, before.1, control)? {
+            match try_weld(positions, polygons, t, may, control)? {
                 Trial::Folds if t == most => proposed.reach = proposed.reach.max(most),
-                Trial::Leaves(naked, merged) if naked < before.0 => {
+                Trial::Leaves(naked, merged) if naked < before => {
                     taken.push((naked, t, merged));
                     // Less than nearly as many could not leave nearly as few naked edges.
                     enough = gap.count - gap.count / 50;
@@ -119,7 +128,7 @@ pub(super) fn propose(
         }
     }
     let fewest = taken.iter().map(|t| t.0).min().unwrap_or(0);
-    let nearly = |naked: usize| naked <= fewest + (before.0 - fewest) / 100;
+    let nearly = |naked: usize| naked <= fewest + (before - fewest) / 100;
     let best = taken.into_iter().filter(|t| nearly(t.0)).min_by(|a, b| a.1.total_cmp(&b.1));
     let Some((naked_after, tolerance, merged)) = best else { return Ok((proposed, None)) };
     proposed.reach = proposed.reach.max(tolerance);
@@ -130,9 +139,18 @@ fn diagonal(positions: &[DVec3]) -> f64 {
     Aabb::around(positions.iter().copied()).map_or(0.0, |b| distance(b.min, b.max))
 }
 
+/// What a weld may do.
+#[derive(Clone, Copy)]
+struct Bounds {
+    /// Faces that are lost.
+    folded: usize,
+    /// Third and later faces of edges.
+    more: usize,
+}
+
 /// What a weld on trial does.
 enum Trial {
-    /// More than one face in five hundred folds, or there are new edges of three or more faces.
+    /// More than it may.
     Folds,
     /// That many naked edges are left; and what vertices are merged into.
     Leaves(usize, Vec<u32>),
@@ -143,14 +161,14 @@ fn try_weld(
     positions: &[DVec3],
     polygons: &Polygons,
     tolerance: f64,
-    more: usize,
+    may: Bounds,
     control: &mut Control<'_>,
 ) -> Result<Trial, Cancelled> {
     control.report("propose a tolerance", 0.0)?;
     let Ok(merged) = weld(positions, Some(tolerance), &mut Control::none()) else { return Ok(Trial::Folds) };
     let mut left = Polygons::with_capacity(polygons.len(), polygons.corners().len());
     let mut sorted: Vec<u32> = Vec::new();
-    let (mut folded, may_fold) = (0, polygons.len() / 500);
+    let mut folded = 0;
     for face in polygons.iter() {
         sorted.clear();
         sorted.extend(face.iter().map(|&v| merged[v as usize]));
@@ -159,13 +177,13 @@ fn try_weld(
             left.push(face.iter().map(|&v| merged[v as usize]));
         } else {
             folded += 1;
-            if folded > may_fold {
+            if folded > may.folded {
                 return Ok(Trial::Folds);
             }
         }
     }
     let chains = Chains::new(positions.len(), &left);
-    if chains.more_uses() > more {
+    if chains.more_uses() > may.more {
         return Ok(Trial::Folds);
     }
     Ok(Trial::Leaves(chains.into_pairing().open.len(), merged))
