@@ -1,6 +1,6 @@
 """Repairs the same broken meshes with meshwright and with other tools, and prints the results side by side.
 
-Usage: repair.py FAULTS MESHWRIGHT [--only TOOL,TOOL...] [--markdown]
+Usage: repair.py FAULTS MESHWRIGHT [--only TOOL,TOOL...]
 
 FAULTS is a directory that `cargo bench --bench faults -- FAULTS` writes: `cases.tsv` names each case with its shape and fault;
 `CASE.obj` is the broken mesh, `SHAPE.truth.obj` the intact one, `CASE.intact` the faces of it that the fault left alone.
