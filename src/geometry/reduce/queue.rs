@@ -21,7 +21,20 @@ pub(super) const DOUBLING: usize = 1 << (23 - SHIFT);
 /// Costs are no less than zero.
 const BUCKETS: usize = (f32::INFINITY.to_bits() >> SHIFT) as usize + 1;
 /// No bucket: the edge waits for something around it to change.
-pub(super) const PARKED: u16 = u16::MAX;
+pub(super) const PARKED: u16 = i16::MAX as u16;
+
+/// The bucket for a cost.
+#[inline]
+pub(super) fn bucket(cost: f64) -> u16 {
+    (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).min(BUCKETS - 1) as u16
+}
+
+/// The first bucket that any of these edges is in, or [`PARKED`].
+#[inline]
+pub(super) fn least(keys: &[u16]) -> u16 {
+    // Signed, because that is what common processors compare many of at once.
+    keys.iter().fold(PARKED as i16, |least, &key| least.min(key as i16)) as u16
+}
 
 impl Queue {
     pub(super) fn new() -> Self {
@@ -38,7 +51,7 @@ impl Queue {
     /// The bucket for a cost; none that has been emptied already.
     #[inline]
     pub(super) fn bucket(&self, cost: f64) -> u16 {
-        (((cost as f32).max(0.0).to_bits() >> SHIFT) as usize).clamp(self.at, BUCKETS - 1) as u16
+        bucket(cost).max(self.at as u16)
     }
 
     #[inline]

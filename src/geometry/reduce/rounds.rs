@@ -7,7 +7,7 @@
 use super::attempt::Guards;
 use super::copy::Copy;
 use super::part::Part;
-use super::queue::DOUBLING;
+use super::queue::{DOUBLING, PARKED, least};
 use super::run::{Account, Run, Step};
 use crate::matching::NONE;
 use crate::{Cancelled, Control};
@@ -26,7 +26,9 @@ struct Job<'a> {
     part: Part<'a>,
     run: Run,
     /// The first bucket.
-    first: Option<usize>,
+    first: u16,
+    /// How many edges wait in this round.
+    waiting: usize,
     /// How many faces may go in this round.
     share: usize,
 }
@@ -107,30 +109,33 @@ impl Copy {
         let goal = (faces as f64 * (0.98 - 3.0 * seam as f64 / all.max(1) as f64)).max(0.0) as usize;
         let mut jobs: Vec<Job<'_>> = Vec::new();
         for part in self.parts(cuts) {
-            let run = Run::new(part.edges.len(), guards, run.log.is_some());
-            jobs.push(Job { part, run, first: None, share: 0 });
+            let run = Run::new(0, guards, run.log.is_some());
+            jobs.push(Job { part, run, first: PARKED, waiting: 0, share: 0 });
         }
-        each(&mut jobs, |job| job.run.fill(&mut job.part));
+        each(&mut jobs, |job| job.run.estimate(&mut job.part));
         let mut removed = 0;
         loop {
-            each(&mut jobs, |job| job.first = job.run.first(&job.part));
-            let Some(start) = jobs.iter().filter_map(|job| job.first).min() else { break };
+            each(&mut jobs, |job| job.first = least(job.part.keys));
+            let start = jobs.iter().map(|job| job.first).min().unwrap_or(PARKED);
             let left = goal.saturating_sub(removed);
-            let count = |jobs: &[Job<'_>], end| jobs.iter().map(|job| job.run.count(end)).sum::<usize>();
-            let mut end = (start / DOUBLING + 1) * DOUBLING;
-            if count(&jobs, end) > left / 4 {
-                // Near the goal in smaller steps.
-                end = end.min(start + DOUBLING / 16);
-            }
-            let waiting = count(&jobs, end);
-            if left < 64 || waiting == 0 {
+            if left < 64 || start == PARKED {
                 break;
             }
-            for job in &mut jobs {
-                let count = job.run.count(end) as u64;
-                job.share = (left as u64 * count).div_ceil(waiting as u64) as usize;
+            let count = |jobs: &mut Vec<Job<'_>>, end| {
+                each(jobs, |job| job.waiting = job.part.keys.iter().filter(|&&key| key < end).count());
+                jobs.iter().map(|job| job.waiting).sum::<usize>()
+            };
+            let mut end = (start / DOUBLING as u16 + 1) * DOUBLING as u16;
+            let mut waiting = count(&mut jobs, end);
+            if waiting > 2 * left {
+                // Near the goal in smaller steps.
+                end = end.min(start + DOUBLING as u16 / 4);
+                waiting = count(&mut jobs, end);
             }
-            each(&mut jobs, |job| job.run.drain(&mut job.part, job.share, end));
+            for job in &mut jobs {
+                job.share = (left as u64 * job.waiting as u64).div_ceil(waiting as u64) as usize;
+            }
+            each(&mut jobs, |job| job.run.sweep(&mut job.part, job.share, end));
             removed = jobs.iter().map(|job| job.part.removed).sum();
             let share = removed as f64 / faces.min(all).max(1) as f64;
             control.report("collapse", 0.1 + 0.75 * share.min(1.0))?;
@@ -170,18 +175,8 @@ fn come_together(whole: &mut Part<'_>, run: &mut Run, seam: &[u32], line_weight:
             }
         }
     }
-    seam.iter().for_each(|&v| is_seam[v as usize] = true);
-    for e in 0..whole.edges.len() as u32 {
-        let edge = *whole.edge(e);
-        if edge.is_dead() {
-            continue;
-        }
-        if edge.ends().iter().any(|&v| is_seam[v as usize]) {
-            run.put(whole, e);
-        } else {
-            run.keep(whole, e);
-        }
-    }
+    whole.keys.fill(PARKED);
+    run.fill(whole);
 }
 
 /// Does all jobs, on several threads where the feature `rayon` allows it.

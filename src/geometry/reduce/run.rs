@@ -2,7 +2,7 @@
 
 use super::attempt::{Guards, Scratch};
 use super::part::Part;
-use super::queue::{DOUBLING, PARKED, Queue};
+use super::queue::{DOUBLING, PARKED, Queue, bucket, least};
 use super::{Refusal, Refusals};
 use crate::{Cancelled, Control};
 
@@ -125,14 +125,6 @@ impl Run {
         &mut self.queues[((e - part.first_edge) / CELL) as usize]
     }
 
-    /// Puts an edge back into its bucket.
-    pub(super) fn keep(&mut self, part: &Part<'_>, e: u32) {
-        let key = part.key(e);
-        if key != PARKED {
-            self.queue(part, e).push(key, e);
-        }
-    }
-
     /// Puts every edge into the queue.
     pub(super) fn fill(&mut self, part: &mut Part<'_>) {
         for i in 0..part.edges.len() as u32 {
@@ -210,14 +202,77 @@ impl Run {
         }
     }
 
-    /// After a collapse, while all of this is at hand.
+    /// Tells each edge of a part what it costs.
+    pub(super) fn estimate(&mut self, part: &mut Part<'_>) {
+        for i in 0..part.edges.len() {
+            part.keys[i] = match part.candidate(part.first_edge + i as u32) {
+                Ok(candidate) => bucket(candidate.cost),
+                Err(refusal) => self.refuse(refusal),
+            };
+        }
+    }
+
+    /// Collapses what costs less than `end` in the order in which it lies in memory, until `faces` more are gone. What an
+    /// edge costs is found out when its turn comes: around a collapse nothing is put anywhere.
+    pub(super) fn sweep(&mut self, part: &mut Part<'_>, faces: usize, end: u16) {
+        let goal = part.removed + faces;
+        let mut start = 0;
+        while start < part.keys.len() {
+            let stop = (start + 32).min(part.keys.len());
+            if least(&part.keys[start..stop]) < end {
+                for i in start..stop {
+                    if part.keys[i] < end {
+                        if part.removed >= goal {
+                            return;
+                        }
+                        self.take_or_tell(part, part.first_edge + i as u32, end);
+                    }
+                }
+            }
+            start = stop;
+        }
+    }
+
     #[inline]
-    fn follow(&mut self, part: &mut Part<'_>, halfedge: u32) {
+    fn take_or_tell(&mut self, part: &mut Part<'_>, e: u32, end: u16) {
+        let now = part.key(e);
+        let candidate = part.candidate(e);
+        if let Ok(candidate) = &candidate {
+            let bucket = bucket(candidate.cost);
+            if bucket >= end {
+                *part.key_mut(e) = bucket;
+                return;
+            }
+        }
+        *part.key_mut(e) = PARKED;
+        match candidate.and_then(|c| part.attempt(e, c, self.guards, &mut self.scratch)) {
+            Err(refusal) => _ = self.refuse(refusal),
+            Ok(halfedge) => {
+                self.note(part, halfedge);
+                // What was refused may do now.
+                for spoke in self.scratch.goes.spokes.iter().skip(1).chain(self.scratch.stays.spokes.iter().skip(1)) {
+                    if part.key(spoke >> 1) == PARKED && !part.edge(spoke >> 1).is_dead() {
+                        *part.key_mut(spoke >> 1) = now;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Counts a collapse, and keeps it if that is wanted.
+    #[inline]
+    fn note(&mut self, part: &Part<'_>, halfedge: u32) {
         self.account.collapses += 1;
         if let Some(log) = &mut self.log {
             let target = part.spot(part.origin(halfedge ^ 1));
             log.push(Step { halfedge, place: target.is_moved().then_some(target.position) });
         }
+    }
+
+    /// After a collapse, while all of this is at hand.
+    #[inline]
+    fn follow(&mut self, part: &mut Part<'_>, halfedge: u32) {
+        self.note(part, halfedge);
         for i in 1..self.scratch.goes.spokes.len() {
             self.put_again(part, self.scratch.goes.spokes[i] >> 1);
         }
