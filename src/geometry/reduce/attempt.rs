@@ -1,10 +1,10 @@
 //! One collapse on the copy: whether it is legal, whether it folds or flattens faces, and the links afterwards.
 
 use super::Refusal;
-use super::features::{Hold, plane};
 use super::part::Part;
 use super::place::{Candidate, Way};
 use super::quadric::Planes;
+use super::ring::{Ring, Spoke, volume};
 use glam::DVec3;
 
 /// What the shape of faces must be after a collapse.
@@ -20,21 +20,6 @@ pub(super) struct Guards {
     pub(super) line_weight: f64,
 }
 
-/// The edges around an end, clockwise, the collapsing one first.
-#[derive(Default)]
-pub(super) struct Ring {
-    pub(super) spokes: Vec<u32>,
-    around: Vec<u32>,
-    /// Where the vertices around are, seen from the middle of the edge.
-    places: Vec<DVec3>,
-    /// Twice the area vectors of the faces that stay, by spoke; of those that go and on the boundary nothing.
-    areas: Vec<DVec3>,
-    /// The same after the collapse.
-    later: Vec<DVec3>,
-    /// Whether nothing holds the vertices around.
-    is_plain: bool,
-}
-
 /// Room to work in.
 #[derive(Default)]
 pub(super) struct Scratch {
@@ -42,109 +27,8 @@ pub(super) struct Scratch {
     pub(super) goes: Ring,
     /// Around the one that stays; empty if that has too many edges to walk around.
     pub(super) stays: Ring,
-    sorted: Vec<u32>,
-}
-
-impl Ring {
-    /// Walks around the origin of `first`.
-    #[inline]
-    fn walk(&mut self, part: &Part<'_>, first: u32, middle: DVec3) {
-        self.spokes.clear();
-        self.around.clear();
-        self.places.clear();
-        self.is_plain = true;
-        let mut h = first;
-        loop {
-            let (v, after) = part.around(h);
-            let spot = part.spot(v);
-            self.spokes.push(h);
-            self.around.push(v);
-            self.places.push(spot.position - middle);
-            self.is_plain &= spot.hold() == Hold::Free;
-            h = after;
-            if h == first {
-                return;
-            }
-        }
-    }
-
-    /// Looks at the faces around the end at `at`.
-    #[inline]
-    fn measure(&mut self, at: DVec3) {
-        self.areas.clear();
-        self.areas.extend(self.places.windows(2).map(|pair| (pair[1] - at).cross(pair[0] - at)));
-    }
-
-    /// Twice the area vectors of the faces that stay, summed.
-    #[inline]
-    fn area(&self) -> DVec3 {
-        self.areas.iter().skip(1).sum()
-    }
-
-    /// Whether the faces that stay are in order once their common corner is at `place`.
-    #[inline]
-    fn check(&mut self, part: &Part<'_>, place: DVec3, guards: Guards) -> Result<(), Refusal> {
-        // The face between spokes i and i + 1 is to the right of spoke i; that of spoke 0 goes.
-        self.later.clear();
-        self.later.push(DVec3::ZERO);
-        for i in 1..self.areas.len() {
-            let (u, v) = (self.places[i + 1] - place, self.places[i] - place);
-            let (before, after) = (self.areas[i], u.cross(v));
-            self.later.push(after);
-            let (dot, was, is) = (after.dot(before), before.length_squared(), after.length_squared());
-            // What had no area cannot fold.
-            if was > 0.0
-                && (dot <= 0.0 || dot * dot < guards.turn * was * is)
-                && !part.is_open(self.spokes[i] ^ 1)
-            {
-                return Err(Refusal::Flip);
-            }
-            let sides = u.length_squared() + v.length_squared();
-            let far = (u - v).length_squared();
-            if is_thin(is, sides + far, guards.shape) && !part.is_open(self.spokes[i] ^ 1) {
-                let end = self.places[0];
-                let [u, v] = [self.places[i + 1] + end, self.places[i] + end];
-                let old_sides = u.length_squared() + v.length_squared() + far;
-                if was * old_sides.powi(-2) > is * (sides + far).powi(-2) {
-                    return Err(Refusal::Shape);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Exchanges the planes of the faces around this end in the vertices around, and returns those of the new faces.
-    /// The planes of the faces that are `gone`, right and left, are taken out of their third corners.
-    #[inline]
-    fn exchange(&self, part: &mut Part<'_>, gone: Option<[Planes; 2]>) -> Planes {
-        let (mut fan, mut carried) = (Planes::default(), Planes::default());
-        if let Some([right, _]) = gone {
-            carried = Planes::default() - right;
-        }
-        for i in 1..self.areas.len() {
-            let after = plane(self.later[i]);
-            let change = after - plane(self.areas[i]);
-            fan = fan + after;
-            let slot = part.fan_mut(self.around[i]);
-            *slot = *slot + (carried + change);
-            carried = change;
-        }
-        if let Some([_, left]) = gone {
-            carried = carried - left;
-        }
-        if let Some(&last) = self.around.last() {
-            let slot = part.fan_mut(last);
-            *slot = *slot + carried;
-        }
-        fan
-    }
-}
-
-/// Whether a triangle is further from equilateral than allowed: `2 √3 |cross| / (sum of squared sides)` is 1 there, and 0
-/// without area.
-#[inline]
-fn is_thin(cross_squared: f64, sides_squared: f64, shape: f64) -> bool {
-    12.0 * cross_squared < shape * shape * sides_squared * sides_squared
+    /// The vertices around that, but for the other end.
+    ends: Vec<u32>,
 }
 
 impl Part<'_> {
@@ -160,15 +44,12 @@ impl Part<'_> {
             Way::ToOrigin => 2 * e + 1,
             Way::Anywhere | Way::ToTarget => 2 * e,
         };
-        self.check_links(halfedge, candidate.middle, scratch)?;
-        let (goes, stays) = (&mut scratch.goes, &mut scratch.stays);
-        // The ends, seen from the middle.
+        // Where the target is, seen from the middle.
         let to = if halfedge & 1 == 0 { candidate.half } else { -candidate.half };
-        let from = -to;
-        goes.measure(from);
+        self.check_links(halfedge, candidate.middle, to, scratch)?;
+        let (goes, stays) = (&mut scratch.goes, &mut scratch.stays);
         if candidate.way == Way::Anywhere {
-            stays.measure(to);
-            candidate.keep_volume(self, goes, stays, to);
+            candidate.keep_volume(self, goes, stays);
             stays.check(self, candidate.place, guards)?;
         }
         goes.check(self, candidate.place, guards)?;
@@ -186,9 +67,8 @@ impl Part<'_> {
         // Away from features the planes of the faces that change are exchanged, which is less than to sum up anew.
         let is_plain = candidate.way == Way::Anywhere && goes.is_plain && stays.is_plain;
         let fan = if is_plain {
-            let [right, left] = goes.gone(from);
-            let around = goes.exchange(self, Some([plane(right), plane(left)]));
-            around + stays.exchange(self, None)
+            let around = goes.exchange(self, true);
+            around + stays.exchange(self, false)
         } else {
             Planes::default()
         };
@@ -207,7 +87,7 @@ impl Part<'_> {
 
     /// The conditions of [`Mesh::check_collapse`](crate::Mesh::check_collapse), for triangles; walks around the ends.
     #[inline]
-    fn check_links(&self, h: u32, middle: DVec3, scratch: &mut Scratch) -> Result<(), Refusal> {
+    fn check_links(&self, h: u32, middle: DVec3, to: DVec3, scratch: &mut Scratch) -> Result<(), Refusal> {
         let t = h ^ 1;
         let (a, b) = (self.origin(h), self.origin(t));
         if !self.is_open(h) && !self.is_open(t) && self.spot(a).is_open() && self.spot(b).is_open() {
@@ -232,34 +112,39 @@ impl Part<'_> {
         }
         let sides = 2 - usize::from(self.is_open(h)) - usize::from(self.is_open(t));
         let (goes, stays) = (&mut scratch.goes, &mut scratch.stays);
-        goes.walk(self, h, middle);
+        if !goes.walk(self, h, middle, -to) {
+            return Err(Refusal::Valence);
+        }
         if self.spot(b).is_heavy() {
             if !self.is_whole {
                 // Its neighbours' neighbours may be in another part.
                 return Err(Refusal::Valence);
             }
-            stays.spokes.clear();
-            return self.check_heavy(h, &goes.spokes[1..], sides);
+            stays.clear();
+            return self.check_heavy(h, goes.others(), sides);
         }
-        stays.walk(self, t, middle);
-        let (others, theirs) = (&goes.around[1..], &stays.around[1..]);
-        let common = if others.len() * theirs.len() <= 1024 {
-            others.iter().map(|v| theirs.iter().map(|w| usize::from(w == v)).sum::<usize>()).sum()
+        if !stays.walk(self, t, middle, to) {
+            return Err(Refusal::Valence);
+        }
+        let theirs = &mut scratch.ends;
+        theirs.clear();
+        theirs.extend(stays.others().iter().map(|spoke| spoke.end));
+        let others = goes.others().iter().map(|spoke| spoke.end);
+        let common: usize = if others.len() * theirs.len() <= 1024 {
+            others.map(|v| theirs.iter().map(|&w| u32::from(w == v)).sum::<u32>() as usize).sum()
         } else {
-            scratch.sorted.clear();
-            scratch.sorted.extend_from_slice(theirs);
-            scratch.sorted.sort_unstable();
-            others.iter().filter(|v| scratch.sorted.binary_search(v).is_ok()).count()
+            theirs.sort_unstable();
+            others.filter(|v| theirs.binary_search(v).is_ok()).count()
         };
         if common == sides { Ok(()) } else { Err(Refusal::Topology) }
     }
 
     /// The link condition from the side of the end that goes: whether any neighbour is a neighbour of the other end.
-    fn check_heavy(&self, h: u32, spokes: &[u32], sides: usize) -> Result<(), Refusal> {
+    fn check_heavy(&self, h: u32, spokes: &[Spoke], sides: usize) -> Result<(), Refusal> {
         let t = h ^ 1;
         let b = self.origin(t);
         let mut common = 0;
-        for &spoke in spokes {
+        for spoke in spokes.iter().map(|spoke| spoke.halfedge) {
             if self.spot(self.origin(spoke ^ 1)).is_heavy() {
                 let is_left = !self.is_open(h) && spoke ^ 1 == self.prev(h);
                 let is_right = !self.is_open(t) && spoke == self.next(t);
@@ -332,8 +217,8 @@ impl Part<'_> {
             }
         }
         self.bury(h >> 1);
-        for &spoke in &goes.spokes {
-            self.set_origin(spoke, b);
+        for spoke in goes.spokes() {
+            self.set_origin(spoke.halfedge, b);
         }
         let faces = (self.removed - before) as u32;
         let dead = self.spot(a).valence();
@@ -347,34 +232,13 @@ impl Part<'_> {
     }
 }
 
-impl Ring {
-    /// Twice the area vectors of the two faces that go, to the right and to the left of the first spoke, whose origin is at
-    /// `at`.
-    #[inline]
-    fn gone(&self, at: DVec3) -> [DVec3; 2] {
-        let (Some(&right), Some(&left)) = (self.places.get(1), self.places.last()) else {
-            return [DVec3::ZERO; 2];
-        };
-        let along = -at - at;
-        [(right - at).cross(along), along.cross(left - at)]
-    }
-}
-
 impl Candidate {
     /// Moves the place, at the least cost, to where the collapse changes no volume (Lindstrom and Turk, "Fast and memory
     /// efficient polygonal simplification", 1998), if that is near.
     #[inline]
-    fn keep_volume(&mut self, part: &Part<'_>, goes: &Ring, stays: &Ring, to: DVec3) {
+    fn keep_volume(&mut self, part: &Part<'_>, goes: &Ring, stays: &Ring) {
         let Some(factors) = self.factors else { return };
-        let is_inside = |ring: &Ring| {
-            ring.spokes.first().is_some_and(|&h| part.spot(part.origin(h)).hold() == Hold::Free)
-        };
-        if !is_inside(goes) || !is_inside(stays) {
-            return;
-        }
-        let [right, left] = goes.gone(-to);
-        let gradient = goes.area() + stays.area() + right + left;
-        let missing = stays.area().dot(to) - goes.area().dot(to) - gradient.dot(self.place);
+        let Some((missing, gradient)) = volume(part, goes, stays, self.place) else { return };
         let direction = factors.solve(gradient);
         let per_step = gradient.dot(direction);
         if per_step > 0.0 {

@@ -7,7 +7,6 @@ use crate::Mesh;
 use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
 use crate::matching::NONE;
-use crate::parallel::pairs;
 use glam::DVec3;
 
 /// To numbers about zero and about one, and back.
@@ -47,10 +46,10 @@ impl Frame {
 pub(super) struct Copy {
     pub(super) frame: Frame,
     pub(super) spots: Vec<Spot>,
-    fans: Vec<Planes>,
+    pub(super) fans: Vec<Planes>,
     /// The planes of the faces around each vertex as they were.
     pub(super) origins: Vec<Planes>,
-    memory: Vec<Quadric>,
+    pub(super) memory: Vec<Quadric>,
     pub(super) edges: Vec<Edge>,
     keys: Vec<u16>,
     /// The face of the mesh beside each half-edge, by edge and side.
@@ -74,58 +73,45 @@ impl Copy {
 
         // Edges by their lower vertex.
         let ends = |e: u32| [2 * e, 2 * e + 1].map(|h| number[mesh.origin[h as usize] as usize]);
-        let lower = |e: u32| ends(e)[0].min(ends(e)[1]) as usize;
         let mut place = vec![0u32; spots.len() + 1];
-        mesh.edges.live().for_each(|e| place[lower(e) + 1] += 1);
+        let mut edge_number = vec![NONE; mesh.edges.slot_count()];
+        for e in mesh.edges.live() {
+            let ends = ends(e);
+            let lower = ends[0].min(ends[1]);
+            edge_number[e as usize] = lower;
+            place[lower as usize + 1] += 1;
+        }
         for i in 1..place.len() {
             place[i] += place[i - 1];
         }
-        let mut edge_number = vec![NONE; mesh.edges.slot_count()];
-        let mut edge_slot = vec![NONE; mesh.edge_count()];
+        let mut edge_slot = vec![0u32; mesh.edge_count()];
         for e in mesh.edges.live() {
-            let place = &mut place[lower(e)];
-            edge_number[e as usize] = *place;
+            let number = &mut edge_number[e as usize];
+            let place = &mut place[*number as usize];
             edge_slot[*place as usize] = e;
+            *number = *place;
             *place += 1;
         }
         let halfedge = |h: u32| 2 * edge_number[h as usize >> 1] + (h & 1);
-        let mut faces = Vec::with_capacity(edge_slot.len());
-        let mut edges = Vec::with_capacity(edge_slot.len());
-        let mut valence = vec![0u32; spots.len()];
-        for (i, &e) in (0..).zip(&edge_slot) {
+        let mut faces = vec![[0u32; 2]; edge_slot.len()];
+        let mut edges = vec![Edge::default(); edge_slot.len()];
+        for e in mesh.edges.live() {
             let sides = [2 * e as usize, 2 * e as usize + 1];
+            let (i, ends) = (edge_number[e as usize], ends(e));
             let beside = sides.map(|h| mesh.face[h]);
             let is_open = beside.map(|f| f == NONE);
-            let ends = ends(e);
-            faces.push(beside);
-            edges.push(Edge::new(sides.map(|h| halfedge(mesh.next[h])), ends, is_open));
+            faces[i as usize] = beside;
+            edges[i as usize] = Edge::new(sides.map(|h| halfedge(mesh.next[h])), ends, is_open);
             for side in 0..2 {
-                valence[ends[side] as usize] += 1;
+                spots[ends[side] as usize].count_edge();
                 if is_open[side] {
                     spots[ends[1 - side] as usize].link = 2 * i + side as u32;
                 }
             }
         }
-        spots.iter_mut().zip(valence).for_each(|(spot, n)| spot.set_valence(n));
         let keys = vec![PARKED; edges.len()];
         let (fans, origins, memory) = (Vec::new(), Vec::new(), Vec::new());
         Self { frame, spots, fans, origins, memory, edges, keys, faces, vertex_slot, edge_slot }
-    }
-
-    /// Sums up the planes at every vertex; keeps them all along if the error has a bound.
-    pub(super) fn sum_planes(&mut self, line_weight: f64, has_bound: bool) {
-        let mut first = vec![NONE; self.spots.len()];
-        for (i, edge) in (0..).zip(&self.edges) {
-            let ends = edge.ends();
-            (first[ends[0] as usize], first[ends[1] as usize]) = (2 * i, 2 * i + 1);
-        }
-        let whole = self.whole();
-        let (fans, origins) = pairs(&first, |&h| whole.planes_around(h, line_weight));
-        self.fans = fans;
-        if has_bound {
-            self.memory = origins.iter().map(|&planes| planes.into()).collect();
-        }
-        self.origins = origins;
     }
 
     /// All of it.
@@ -133,6 +119,7 @@ impl Copy {
         Part {
             spots: &mut self.spots,
             fans: &mut self.fans,
+            origins: &mut self.origins,
             memory: &mut self.memory,
             edges: &mut self.edges,
             keys: &mut self.keys,

@@ -24,18 +24,26 @@ impl Copy {
     /// Marks feature edges and holds the vertices at them.
     pub(super) fn mark(&mut self, mesh: &Mesh, options: &ReduceOptions<'_>) {
         let is_sharp = sharp_edges(mesh, options.sharp_degrees);
-        let mut locked_edges = vec![false; mesh.edges.slot_count()];
+        let has_locked = !options.locked_edges.is_empty();
+        let mut locked_edges = vec![false; if has_locked { mesh.edges.slot_count() } else { 0 }];
         for e in options.locked_edges.iter().filter_map(|&e| mesh.edge_slot(e)) {
             locked_edges[e as usize] = true;
         }
         let mut count = vec![0u8; self.spots.len()];
         let mut locked = vec![false; self.spots.len()];
+        let has_others = has_locked
+            || !is_sharp.is_empty()
+            || mesh.columns.each(Kind::Corner).next().is_some()
+            || mesh.columns.each(Kind::Face).next().is_some();
         for i in 0..self.edges.len() {
+            if !has_others && !self.edges[i].is_open() {
+                continue;
+            }
             let e = self.edge_slot[i];
             let sides = [2 * e as usize, 2 * e as usize + 1];
             let [left, right] = self.faces[i];
             let inner = sides.iter().all(|&h| mesh.face[h] != crate::matching::NONE);
-            let is_locked = locked_edges[e as usize];
+            let is_locked = locked_edges.get(e as usize).is_some_and(|&locked| locked);
             let is_feature = !inner
                 || is_locked
                 || is_sharp.get(e as usize).is_some_and(|&sharp| sharp)
@@ -72,7 +80,7 @@ impl Part<'_> {
     pub(super) fn fan_around(&self, first: u32, line_weight: f64) -> Planes {
         let mut fan = Planes::default();
         self.each_around(first, |square, double_area, along| match along {
-            None => fan = fan + Planes::one(double_area, weigh(0.5 * square.sqrt()) / square),
+            None => fan = fan + Planes::one(double_area, weight(square)),
             Some(along) => {
                 fan = fan + upright(along, double_area, line_weight * weigh(along.length_squared()))
             }
@@ -80,24 +88,72 @@ impl Part<'_> {
         fan
     }
 
-    /// The same, and the planes that the error is told from: of the same faces and edges, by area.
-    pub(super) fn planes_around(&self, first: u32, line_weight: f64) -> (Planes, Planes) {
-        let (mut fan, mut faces) = (Planes::default(), Planes::default());
-        self.each_around(first, |square, double_area, along| match along {
-            None => {
-                let area = 0.5 * square.sqrt();
-                let plane = Planes::one(double_area, area / square);
-                fan = fan + plane * area.sqrt();
-                faces = faces + plane;
+    /// Adds the planes of each face to those of its corners, and to those that the error is told from, which count by area;
+    /// returns a half-edge of each face that is not all here.
+    pub(super) fn add_planes(&mut self, line_weight: f64) -> Vec<u32> {
+        let edges = self.first_edge..self.first_edge + self.edges.len() as u32;
+        let vertices = self.first_vertex..self.first_vertex + self.spots.len() as u32;
+        let mut others = Vec::new();
+        for h in 2 * edges.start..2 * edges.end {
+            if self.is_open(h) {
+                continue;
             }
-            Some(along) => {
+            let n = self.next(h);
+            if n < h {
+                continue;
+            }
+            if !edges.contains(&(n >> 1)) {
+                others.push(h);
+                continue;
+            }
+            let p = self.next(n);
+            if p < h {
+                continue;
+            }
+            let is_here = |&v: &u32| vertices.contains(&v);
+            if edges.contains(&(p >> 1)) && [h, n, p].map(|h| self.origin(h)).iter().all(is_here) {
+                self.add_face([h, n, p], line_weight);
+            } else {
+                others.push(h);
+            }
+        }
+        others
+    }
+
+    /// Adds the planes of one face.
+    pub(super) fn add_face(&mut self, sides: [u32; 3], line_weight: f64) {
+        let corners = sides.map(|h| self.origin(h));
+        let [a, b, c] = corners.map(|v| self.spot(v).position);
+        let double_area = (b - a).cross(c - a);
+        let square = double_area.length_squared();
+        if square <= NO_AREA {
+            return;
+        }
+        let area = 0.5 * square.sqrt();
+        let face = Planes::one(double_area, 0.25 / area);
+        let counts = face * area.sqrt();
+        for v in corners {
+            self.add(v, counts, face);
+        }
+        for (i, h) in sides.into_iter().enumerate() {
+            if self.is_feature(h) {
+                let along = [b - a, c - b, a - c][i];
                 let length_squared = along.length_squared();
                 let plane = upright(along, double_area, 1.0);
-                fan = fan + plane * (line_weight * weigh(length_squared));
-                faces = faces + plane * length_squared;
+                let counts = plane * (line_weight * weigh(length_squared));
+                for v in [corners[i], corners[(i + 1) % 3]] {
+                    self.add(v, counts, plane * length_squared);
+                }
             }
-        });
-        (fan, faces)
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, v: u32, counts: Planes, plane: Planes) {
+        let fan = self.fan_mut(v);
+        *fan = *fan + counts;
+        let origin = self.origin_mut(v);
+        *origin = *origin + plane;
     }
 
     /// Visits the faces around the origin of a half-edge: the square of twice the area and twice the area vector, and then
@@ -147,12 +203,11 @@ fn weigh(area: f64) -> f64 {
     area * area.sqrt()
 }
 
-/// The plane of one face as it counts in a fan.
-#[inline]
-pub(super) fn plane(double_area: DVec3) -> Planes {
-    let square = double_area.length_squared();
-    let weight = if square > NO_AREA { weigh(0.5 * square.sqrt()) / square } else { 0.0 };
-    Planes::one(double_area, weight)
+/// The weight of a face in a fan, over the square of twice its area, by that square.
+#[inline(always)]
+pub(super) fn weight(square: f64) -> f64 {
+    // The area to the power of 3/2, over its square and four.
+    if square > NO_AREA { 0.25 / (0.5 * square.sqrt()).sqrt() } else { 0.0 }
 }
 
 /// By slot; empty if none is asked for.

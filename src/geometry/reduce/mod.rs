@@ -11,6 +11,7 @@ mod part;
 mod place;
 mod quadric;
 mod queue;
+mod ring;
 mod rounds;
 mod run;
 mod told;

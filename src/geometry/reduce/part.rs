@@ -56,6 +56,14 @@ impl Spot {
         }
     }
 
+    /// Counts one more.
+    #[inline]
+    pub(super) fn count_edge(&mut self) {
+        if self.valence() < VERY_MANY {
+            self.state += ONE_EDGE;
+        }
+    }
+
     #[inline]
     pub(super) fn is_heavy(&self) -> bool {
         self.valence() > HEAVY
@@ -100,7 +108,7 @@ impl Spot {
 }
 
 /// An edge: two half-edges, `2 * edge` and its twin; a quarter of a cache line.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 #[repr(align(16))]
 pub(super) struct Edge {
     /// By side; the top bit tells that the side has no face. In a dead edge, the half-edge that took the place of this one.
@@ -154,6 +162,8 @@ pub(super) struct Part<'a> {
     pub(super) spots: &'a mut [Spot],
     /// The planes around each vertex as they are now: what a collapse costs.
     pub(super) fans: &'a mut [Planes],
+    /// The planes of the faces around each vertex as they were.
+    pub(super) origins: &'a mut [Planes],
     /// The planes of all faces that ever went into a vertex, about its position; empty if the error has no bound.
     pub(super) memory: &'a mut [Quadric],
     pub(super) edges: &'a mut [Edge],
@@ -174,6 +184,7 @@ impl<'a> Part<'a> {
     pub(super) fn split(self, vertices: usize, edges: usize) -> (Self, Self) {
         let (spots, other_spots) = self.spots.split_at_mut(vertices);
         let (fans, other_fans) = self.fans.split_at_mut(vertices);
+        let (origins, other_origins) = self.origins.split_at_mut(vertices);
         let (memory, other_memory) = self.memory.split_at_mut(vertices.min(self.memory.len()));
         let (first, other_edges) = self.edges.split_at_mut(edges);
         let (keys, other_keys) = self.keys.split_at_mut(edges);
@@ -182,6 +193,7 @@ impl<'a> Part<'a> {
         let others = Part {
             spots: other_spots,
             fans: other_fans,
+            origins: other_origins,
             memory: other_memory,
             edges: other_edges,
             keys: other_keys,
@@ -193,7 +205,7 @@ impl<'a> Part<'a> {
         };
         let (edges, is_whole, removed) = (first, false, 0);
         let part =
-            Part { spots, fans, memory, edges, keys, faces, first_vertex, first_edge, is_whole, removed };
+            Part { spots, fans, origins, memory, edges, keys, faces, first_vertex, first_edge, is_whole, removed };
         (part, others)
     }
 }
@@ -217,6 +229,11 @@ impl Part<'_> {
     #[inline]
     pub(super) fn fan_mut(&mut self, v: u32) -> &mut Planes {
         &mut self.fans[v.wrapping_sub(self.first_vertex) as usize]
+    }
+
+    #[inline]
+    pub(super) fn origin_mut(&mut self, v: u32) -> &mut Planes {
+        &mut self.origins[v.wrapping_sub(self.first_vertex) as usize]
     }
 
     #[inline]

@@ -96,22 +96,22 @@ impl Part<'_> {
         let half = (to.position - from.position) * 0.5;
         let middle = from.position + half;
         let quadric = Planes::joined(fan_a, fan_b, half);
-        let (mut place, mut factors) = (DVec3::ZERO, None);
+        let (mut place, mut factors, mut error) = (DVec3::ZERO, None, quadric.at_origin());
         match way {
-            Way::ToTarget => place = half,
-            Way::ToOrigin => place = -half,
+            Way::ToTarget => (place, error) = (half, quadric.at(half)),
+            Way::ToOrigin => (place, error) = (-half, quadric.at(-half)),
             Way::Anywhere => {
                 // Far away the planes are all but parallel.
                 let least =
                     quadric.least(PULL).filter(|l| l.0.length_squared() < 16.0 * half.length_squared());
                 if let Some((least, how)) = least {
-                    (place, factors) = (least, Some(how));
+                    (place, factors, error) = (least, Some(how), quadric.at_least(least, PULL));
                 }
             }
         }
         let weight = quadric.weight();
         let length_cost = LENGTH_COST * weight * 4.0 * half.length_squared();
-        let cost = (quadric.at(place).max(0.0) + length_cost) * weight.sqrt();
+        let cost = (error.max(0.0) + length_cost) * weight.sqrt();
         Ok(Candidate { way, middle, half, place, factors, cost })
     }
 }

@@ -81,6 +81,12 @@ impl Quadric {
         (self.b + self.b + self.a.times(x)).dot(x) + self.c
     }
 
+    /// The value where it is least, `least(pull)` says where.
+    #[inline(always)]
+    pub(super) fn at_least(&self, least: DVec3, pull: f64) -> f64 {
+        self.b.dot(least) + self.c - pull * self.weight() * least.length_squared()
+    }
+
     /// The sum of the weights.
     #[inline(always)]
     pub(super) fn weight(&self) -> f64 {

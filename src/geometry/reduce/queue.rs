@@ -1,5 +1,12 @@
 //! The queue of edges: buckets of costs that differ by less than two percent.
 
+/// How many of these edges are in buckets before `end`.
+#[inline]
+pub(super) fn count_before(keys: &[u16], end: u16) -> usize {
+    let below = |keys: &[u16]| keys.iter().map(|&key| i16::from((key as i16) < end as i16)).sum::<i16>();
+    keys.chunks(1 << 12).map(|keys| below(keys) as usize).sum()
+}
+
 /// Edges by cost. A cost counts by the upper bits of its `f32`, which order as the number does; within a bucket edges go
 /// by number, so that they lie together in memory. Only costs within the factor of two that is being emptied have a bucket
 /// each, so that what is put in finds all buckets in the cache.

@@ -7,7 +7,8 @@
 use super::attempt::Guards;
 use super::copy::Copy;
 use super::part::Part;
-use super::queue::{DOUBLING, PARKED, least};
+use super::quadric::Planes;
+use super::queue::{DOUBLING, PARKED, count_before, least};
 use super::run::{Account, Run, Step};
 use crate::matching::NONE;
 use crate::{Cancelled, Control};
@@ -58,6 +59,28 @@ impl Copy {
         }
         let is_met = run.reduce(&mut whole, faces, seam.is_empty(), control)?;
         Ok(Outcome { is_met, account: run.account, log: run.log })
+    }
+
+    /// Sums up the planes at every vertex; keeps them all along if the error has a bound.
+    pub(super) fn sum_planes(&mut self, line_weight: f64, has_bound: bool) {
+        self.fans = vec![Planes::default(); self.spots.len()];
+        self.origins = self.fans.clone();
+        let cuts = self.cuts();
+        let mut jobs: Vec<_> = self.parts(&cuts).into_iter().map(|part| (part, Vec::new())).collect();
+        each(&mut jobs, |(part, others)| *others = part.add_planes(line_weight));
+        let others: Vec<u32> = jobs.into_iter().flat_map(|(_, others)| others).collect();
+        let mut whole = self.whole();
+        for h in others {
+            let n = whole.next(h);
+            let p = whole.next(n);
+            // Told by more than one part.
+            if h < n && h < p {
+                whole.add_face([h, n, p], line_weight);
+            }
+        }
+        if has_bound {
+            self.memory = self.origins.iter().map(|&planes| planes.into()).collect();
+        }
     }
 
     /// Where the parts begin and end, by vertex.
@@ -122,7 +145,7 @@ impl Copy {
                 break;
             }
             let count = |jobs: &mut Vec<Job<'_>>, end| {
-                each(jobs, |job| job.waiting = job.part.keys.iter().filter(|&&key| key < end).count());
+                each(jobs, |job| job.waiting = count_before(job.part.keys, end));
                 jobs.iter().map(|job| job.waiting).sum::<usize>()
             };
             let mut end = (start / DOUBLING as u16 + 1) * DOUBLING as u16;
@@ -181,13 +204,13 @@ fn come_together(whole: &mut Part<'_>, run: &mut Run, seam: &[u32], line_weight:
 
 /// Does all jobs, on several threads where the feature `rayon` allows it.
 #[cfg(feature = "rayon")]
-fn each<'a>(jobs: &mut [Job<'a>], work: impl Fn(&mut Job<'a>) + Sync + Send) {
+fn each<J: Send>(jobs: &mut [J], work: impl Fn(&mut J) + Sync + Send) {
     use rayon::prelude::*;
     jobs.par_iter_mut().for_each(work);
 }
 
 /// Does all jobs.
 #[cfg(not(feature = "rayon"))]
-fn each<'a>(jobs: &mut [Job<'a>], work: impl Fn(&mut Job<'a>)) {
+fn each<J>(jobs: &mut [J], work: impl Fn(&mut J)) {
     jobs.iter_mut().for_each(work);
 }

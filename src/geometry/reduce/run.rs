@@ -250,9 +250,11 @@ impl Run {
             Ok(halfedge) => {
                 self.note(part, halfedge);
                 // What was refused may do now.
-                for spoke in self.scratch.goes.spokes.iter().skip(1).chain(self.scratch.stays.spokes.iter().skip(1)) {
-                    if part.key(spoke >> 1) == PARKED && !part.edge(spoke >> 1).is_dead() {
-                        *part.key_mut(spoke >> 1) = now;
+                for ring in [&self.scratch.goes, &self.scratch.stays] {
+                    for e in ring.others().iter().map(|spoke| spoke.halfedge >> 1) {
+                        if part.key(e) == PARKED && !part.edge(e).is_dead() {
+                            *part.key_mut(e) = now;
+                        }
                     }
                 }
             }
@@ -273,11 +275,11 @@ impl Run {
     #[inline]
     fn follow(&mut self, part: &mut Part<'_>, halfedge: u32) {
         self.note(part, halfedge);
-        for i in 1..self.scratch.goes.spokes.len() {
-            self.put_again(part, self.scratch.goes.spokes[i] >> 1);
+        for i in 1..self.scratch.goes.spokes().len() {
+            self.put_again(part, self.scratch.goes.spokes()[i].halfedge >> 1);
         }
-        for i in 1..self.scratch.stays.spokes.len() {
-            self.put_again(part, self.scratch.stays.spokes[i] >> 1);
+        for i in 1..self.scratch.stays.spokes().len() {
+            self.put_again(part, self.scratch.stays.spokes()[i].halfedge >> 1);
         }
     }
 
