@@ -149,39 +149,39 @@ impl Add for Quadric {
     }
 }
 
-/// A symmetric positive matrix, taken apart as LDLᵀ; keeps its digits where A is all but singular, which Cramer's rule
-/// does not.
+/// A symmetric positive matrix after elimination without division (Bareiss, "Sylvester's identity and multistep
+/// integer-preserving Gaussian elimination", 1968); keeps its digits where A is all but singular, which Cramer's rule does
+/// not, and no division waits for another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Factors {
+    /// The first row, and the second of what is left after the first step.
+    xx: f64,
+    xy: f64,
+    xz: f64,
+    yy: f64,
+    yz: f64,
+    /// Inverses of the pivots.
     inverse: DVec3,
-    yx: f64,
-    zx: f64,
-    zy: f64,
 }
 
 impl Factors {
     #[inline(always)]
     fn of(&[xx, xy, xz, yy, yz, zz]: &[f64; 6], shift: f64) -> Option<Self> {
-        let dx = xx + shift;
-        let ix = 1.0 / dx;
-        let (yx, zx) = (xy * ix, xz * ix);
-        let dy = yy + shift - yx * xy;
-        let iy = 1.0 / dy;
-        let rest = yz - yx * xz;
-        let zy = rest * iy;
-        let dz = zz + shift - zx * xz - zy * rest;
-        let is_positive = dx > 0.0 && dy > 0.0 && dz > 0.0;
-        let inverse = DVec3::new(ix, iy, 1.0 / dz);
-        (is_positive && inverse.is_finite()).then_some(Self { inverse, yx, zx, zy })
+        let (xx, yy, zz) = (xx + shift, yy + shift, zz + shift);
+        let (yy, yz, zz) = (xx * yy - xy * xy, xx * yz - xy * xz, xx * zz - xz * xz);
+        let last = yy * zz - yz * yz;
+        let is_positive = xx > 0.0 && yy > 0.0 && last > 0.0;
+        let inverse = DVec3::new(1.0 / xx, 1.0 / yy, 1.0 / last);
+        (is_positive && inverse.is_finite()).then_some(Self { xx, xy, xz, yy, yz, inverse })
     }
 
     #[inline(always)]
     pub(super) fn solve(&self, v: DVec3) -> DVec3 {
-        let y = v.y - self.yx * v.x;
-        let z = v.z - self.zx * v.x - self.zy * y;
-        let z = z * self.inverse.z;
-        let y = y * self.inverse.y - self.zy * z;
-        DVec3::new(v.x * self.inverse.x - self.yx * y - self.zx * z, y, z)
+        let y = self.xx * v.y - self.xy * v.x;
+        let z = self.xx * v.z - self.xz * v.x;
+        let z = (self.yy * z - self.yz * y) * self.inverse.z;
+        let y = (y - self.yz * z) * self.inverse.y;
+        DVec3::new((v.x - self.xy * y - self.xz * z) * self.inverse.x, y, z)
     }
 }
 

@@ -10,6 +10,8 @@ use crate::{Cancelled, Control};
 const CELL: u32 = 1 << 14;
 /// Up to so many cells strictly go by cost.
 const FEW: usize = 12;
+/// So many edges are looked up at once.
+const BATCH: usize = 32;
 /// How often one in so many faces is removed, progress is told.
 const REPORTS: usize = 64;
 
@@ -18,6 +20,7 @@ pub(super) struct Run {
     /// By cell.
     queues: Vec<Queue>,
     scratch: Scratch,
+    batch: Vec<u32>,
     guards: Guards,
     pub(super) account: Account,
     /// The half-edges that were collapsed and where the vertex went, if it is kept; no place: where it was.
@@ -48,6 +51,7 @@ impl Run {
         Self {
             queues: (0..cells).map(|_| Queue::new()).collect(),
             scratch: Scratch::default(),
+            batch: Vec::new(),
             guards,
             account: Account::default(),
             log: keep_log.then(Vec::new),
@@ -216,21 +220,32 @@ impl Run {
     /// edge costs is found out when its turn comes: around a collapse nothing is put anywhere.
     pub(super) fn sweep(&mut self, part: &mut Part<'_>, faces: usize, end: u16) {
         let goal = part.removed + faces;
-        let mut start = 0;
-        while start < part.keys.len() {
-            let stop = (start + 32).min(part.keys.len());
-            if least(&part.keys[start..stop]) < end {
-                for i in start..stop {
-                    if part.keys[i] < end {
-                        if part.removed >= goal {
-                            return;
-                        }
-                        self.take_or_tell(part, part.first_edge + i as u32, end);
-                    }
+        let mut batch = std::mem::take(&mut self.batch);
+        let mut at = 0;
+        while at < part.keys.len() {
+            batch.clear();
+            while at < part.keys.len() && batch.len() < BATCH {
+                let keys = &part.keys[at..part.keys.len().min(at + BATCH)];
+                if least(keys) < end {
+                    let found = (0..).zip(keys).filter(|found| *found.1 < end);
+                    batch.extend(found.map(|(i, _): (u32, _)| part.first_edge + at as u32 + i));
+                }
+                at += keys.len();
+            }
+            touch(part, &batch);
+            for &e in &batch {
+                if part.removed >= goal {
+                    break;
+                }
+                if part.key(e) < end {
+                    self.take_or_tell(part, e, end);
                 }
             }
-            start = stop;
+            if part.removed >= goal {
+                break;
+            }
         }
+        self.batch = batch;
     }
 
     #[inline]
