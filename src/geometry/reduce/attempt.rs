@@ -99,14 +99,15 @@ impl Part<'_> {
             }
             let n = self.next(h);
             let p = self.next(n);
-            // The last face of its apex; two features that would become one; two faces back to back.
+            // The last face of the third corner; two features that would become one; two faces back to back, because three
+            // edges meet in that corner.
             if self.is_open(n ^ 1) && self.is_open(p ^ 1) {
                 return Err(Refusal::Topology);
             }
             if self.is_feature(n) && self.is_feature(p) {
                 return Err(Refusal::Feature);
             }
-            if !self.is_open(n ^ 1) && !self.is_open(p ^ 1) && self.apex(n ^ 1) == self.apex(p ^ 1) {
+            if !self.is_open(n ^ 1) && !self.is_open(p ^ 1) && self.spot(self.origin(p)).valence() == 3 {
                 return Err(Refusal::Topology);
             }
         }

@@ -58,6 +58,7 @@ pub(super) struct Copy {
     pub(super) vertex_slot: Vec<u32>,
     /// The slot in the mesh of each edge.
     pub(super) edge_slot: Vec<u32>,
+    pub(super) face_count: usize,
 }
 
 impl Copy {
@@ -111,7 +112,8 @@ impl Copy {
         }
         let keys = vec![PARKED; edges.len()];
         let (fans, origins, memory) = (Vec::new(), Vec::new(), Vec::new());
-        Self { frame, spots, fans, origins, memory, edges, keys, faces, vertex_slot, edge_slot }
+        let face_count = mesh.face_count();
+        Self { frame, spots, fans, origins, memory, edges, keys, faces, vertex_slot, edge_slot, face_count }
     }
 
     /// All of it.

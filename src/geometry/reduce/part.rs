@@ -204,8 +204,19 @@ impl<'a> Part<'a> {
             removed: 0,
         };
         let (edges, is_whole, removed) = (first, false, 0);
-        let part =
-            Part { spots, fans, origins, memory, edges, keys, faces, first_vertex, first_edge, is_whole, removed };
+        let part = Part {
+            spots,
+            fans,
+            origins,
+            memory,
+            edges,
+            keys,
+            faces,
+            first_vertex,
+            first_edge,
+            is_whole,
+            removed,
+        };
         (part, others)
     }
 }
@@ -281,12 +292,6 @@ impl Part<'_> {
     #[inline]
     pub(super) fn origin(&self, h: u32) -> u32 {
         self.edge(h >> 1).origin[(h & 1) as usize] & !TOP
-    }
-
-    /// The third corner of a triangle.
-    #[inline]
-    pub(super) fn apex(&self, h: u32) -> u32 {
-        self.around(self.next(h)).0
     }
 
     /// The target of a spoke and the spoke after it, clockwise.

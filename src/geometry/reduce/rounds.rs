@@ -10,7 +10,6 @@ use super::part::Part;
 use super::quadric::Planes;
 use super::queue::{DOUBLING, PARKED, count_before, least};
 use super::run::{Account, Run, Step};
-use crate::matching::NONE;
 use crate::{Cancelled, Control};
 
 /// A part has this many vertices or up to twice as many.
@@ -64,7 +63,7 @@ impl Copy {
     /// Sums up the planes at every vertex; keeps them all along if the error has a bound.
     pub(super) fn sum_planes(&mut self, line_weight: f64, has_bound: bool) {
         self.fans = vec![Planes::default(); self.spots.len()];
-        self.origins = self.fans.clone();
+        self.origins = vec![Planes::default(); self.spots.len()];
         let cuts = self.cuts();
         let mut jobs: Vec<_> = self.parts(&cuts).into_iter().map(|part| (part, Vec::new())).collect();
         each(&mut jobs, |(part, others)| *others = part.add_planes(line_weight));
@@ -127,7 +126,7 @@ impl Copy {
         run: &mut Run,
         control: &mut Control<'_>,
     ) -> Result<usize, Cancelled> {
-        let all = self.faces.iter().flatten().filter(|&&f| f != NONE).count() / 3;
+        let all = self.face_count;
         // What the seam has to give, and a rest that goes strictly by cost.
         let goal = (faces as f64 * (0.98 - 3.0 * seam as f64 / all.max(1) as f64)).max(0.0) as usize;
         let mut jobs: Vec<Job<'_>> = Vec::new();
