@@ -1,5 +1,7 @@
 //! Turning outward: solids face out, cavities in, and what is not sure stays.
 
+#[path = "corpus/mod.rs"]
+mod corpus;
 #[path = "shapes/mod.rs"]
 mod shapes;
 
@@ -142,4 +144,33 @@ fn bad_confidence_and_cancelling_change_nothing() {
     let options = OutwardOptions { control: Control::new(&mut hook), ..Default::default() };
     assert_eq!(mesh.orient_outward(options), Err(OutwardError::Cancelled(Cancelled)));
     assert_eq!(volume(&mesh), -1.0);
+}
+
+#[test]
+fn probe_regr() {
+    use meshwright::cleanup::{CleanOptions, Weld, clean, index};
+    let Some(rows) = corpus::rows() else { return };
+    for row in rows.iter().filter(|r| r.path.ends_with("assimp__regr_3429812.obj")) {
+        let soup = row.load().expect("read");
+        let pool = index(&soup, Weld::Exact).expect("always answers").value;
+        eprintln!("{:?} {:?}", pool.polygons(), pool.topology().is_closed());
+        let out = orient_outward(&pool.topology(), OutwardOptions::default()).expect("not cancelled");
+        eprintln!("raw {:?} {:?}", out.parts, out.outcome.value.polygons());
+        let unified = meshwright::unify_winding(&pool.topology()).expect("orientable").value;
+        let out = orient_outward(&unified.topology(), OutwardOptions::default()).expect("not cancelled");
+        eprintln!("unified {:?} {:?}", out.parts, out.outcome.value.polygons());
+        eprintln!("vol {:?}", out.outcome.value.topology().volume());
+        let out2 = orient_outward(&out.outcome.value.topology(), OutwardOptions::default()).expect("not cancelled");
+        eprintln!("again {:?} {:?}", out2.parts, out2.outcome.value.polygons());
+        let c = clean(&soup, CleanOptions::default()).expect("a");
+        let mut m = c.value;
+        eprintln!("clean {:?} {:?}", m.to_indexed().polygons(), m.closed().map(|c| c.volume()).ok());
+        let parts = m.orient_outward(OutwardOptions::default());
+        eprintln!("{parts:?} {:?} {:?}", m.to_indexed().polygons(), m.closed().map(|c| c.volume()).ok());
+        let parts = m.orient_outward(OutwardOptions::default());
+        eprintln!("{parts:?}");
+        m.reverse();
+        let parts = m.orient_outward(OutwardOptions::default());
+        eprintln!("{parts:?}");
+    }
 }
