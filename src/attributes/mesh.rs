@@ -352,8 +352,7 @@ impl Mesh {
         }
         if let Some(normals) = &attributes.corner_normals {
             let values = spread(normals, corners, &halfedge_of);
-            self.carried.corner_normals =
-                Some(self.column_of(Kind::Corner, values, None, Rule::normals()));
+            self.carried.corner_normals = Some(self.column_of(Kind::Corner, values, None, Rule::normals()));
         }
         if let Some(uvs) = &attributes.corner_uvs {
             let values = spread(uvs, corners, &halfedge_of);

@@ -172,7 +172,9 @@ impl<T: Value> Dense for Store<T> {
     }
 
     fn turn(&mut self, slot: u32, by: &Turning, remember: bool) -> bool {
-        let (Some(turn), Some(value)) = (&self.rule.turn, self.values.get_mut(slot as usize)) else { return false };
+        let (Some(turn), Some(value)) = (&self.rule.turn, self.values.get_mut(slot as usize)) else {
+            return false;
+        };
         let new = turn(value, by);
         let changes = new != *value;
         if changes {

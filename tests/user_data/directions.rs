@@ -74,8 +74,10 @@ impl Columns {
     fn off(&self, mesh: &Mesh) -> f64 {
         let apart = |a: DVec3, b: DVec3| (a - b).length() / b.length().max(1e-300);
         let either = |a: DVec3, b: DVec3| apart(a, b).min(apart(-a, b));
-        let on_vertices = mesh.vertices().map(|v| apart(*mesh.value(self.vertices, v), first_face_normal(mesh, v)));
-        let of_corner = |h| apart(mesh.value(self.corners, h).expect("set"), corner_normal(mesh, h).expect("a corner"));
+        let on_vertices =
+            mesh.vertices().map(|v| apart(*mesh.value(self.vertices, v), first_face_normal(mesh, v)));
+        let of_corner =
+            |h| apart(mesh.value(self.corners, h).expect("set"), corner_normal(mesh, h).expect("a corner"));
         let on_edges =
             mesh.edges().map(|e| either(*mesh.value(self.edges, e), step(mesh, mesh.edge_halfedge(e))));
         let on_faces = mesh.faces().map(|f| apart(*mesh.value(self.faces, f), mesh.face_normal(f)));
@@ -85,7 +87,8 @@ impl Columns {
             // The bitangent points into the face on whichever side the tangent has it.
             let inward = mesh.face_normal(mesh.face(h).expect("a corner")).cross(held.truncate()) * held.w;
             let is_inward = inward.dot(ahead + back) > 0.0;
-            apart(held.truncate(), ahead).min(apart(held.truncate(), back)) + if is_inward { 0.0 } else { 9.0 }
+            apart(held.truncate(), ahead).min(apart(held.truncate(), back))
+                + if is_inward { 0.0 } else { 9.0 }
         };
         let corners = corners(mesh);
         let on_corners = corners.iter().flat_map(|&h| [of_corner(h), of_along(h)]);
@@ -106,8 +109,13 @@ impl Columns {
 
 fn maps() -> [DAffine3; 4] {
     let shear = DMat3::from_cols(dvec3(2.0, 0.1, 0.0), dvec3(0.5, 1.0, 0.2), dvec3(0.0, 0.3, 3.0));
-    [shear, shear * -1.0, DMat3::from_diagonal(dvec3(1e-3, 1.0, 1e3)), DMat3::from_diagonal(dvec3(1.0, -2.0, 3.0))]
-        .map(|m| DAffine3::from_mat3_translation(m, dvec3(1.0, 2.0, 3.0)))
+    [
+        shear,
+        shear * -1.0,
+        DMat3::from_diagonal(dvec3(1e-3, 1.0, 1e3)),
+        DMat3::from_diagonal(dvec3(1.0, -2.0, 3.0)),
+    ]
+    .map(|m| DAffine3::from_mat3_translation(m, dvec3(1.0, 2.0, 3.0)))
 }
 
 #[test]
@@ -172,10 +180,14 @@ fn columns_of_normals_hold_what_the_carried_ones_do() {
             let h = mesh.edge_halfedge(e);
             let middle = (mesh.position(mesh.origin(h)) + mesh.position(mesh.target(h))) / 2.0;
             mesh.split_edge_and_faces(e, middle).expect("finite");
-            let _ = mesh.collapse_to_midpoint(mesh.edge_halfedge(edges[noise.below(40) as usize % edges.len()]));
+            let _ =
+                mesh.collapse_to_midpoint(mesh.edge_halfedge(edges[noise.below(40) as usize % edges.len()]));
         }
         assert!(mesh.vertices().all(|v| mesh.normal(v) == Some(*mesh.value(own, v))), "{round}");
-        assert!(corners(&mesh).iter().all(|&h| mesh.corner_normal(h) == *mesh.value(on_corners, h)), "{round}");
+        assert!(
+            corners(&mesh).iter().all(|&h| mesh.corner_normal(h) == *mesh.value(on_corners, h)),
+            "{round}"
+        );
         let near = |v| mesh.value(narrow, v).as_dvec3().distance(*mesh.value(own, v)) < 1e-5;
         assert!(mesh.vertices().all(near), "{round}");
     }
@@ -203,7 +215,9 @@ fn columns_of_other_rules_and_defaults_are_not_turned() {
     let plain = mesh.add_vertex_column(DVec3::X, Rule::interpolate());
     let normals = mesh.add_vertex_column(DVec3::X, Rule::normals());
     mesh.rotate_degrees(DVec3::Z, 90.0, DVec3::ZERO).expect("turned");
-    assert!(mesh.vertices().all(|v| *mesh.value(plain, v) == DVec3::X && *mesh.value(normals, v) == DVec3::Y));
+    assert!(
+        mesh.vertices().all(|v| *mesh.value(plain, v) == DVec3::X && *mesh.value(normals, v) == DVec3::Y)
+    );
     let new = mesh.add_vertex(DVec3::ONE).expect("finite");
     assert_eq!(*mesh.value(normals, new), DVec3::X, "a new element holds the default as it was stated");
 }
@@ -305,7 +319,13 @@ fn numbers_at_the_ends_of_the_range_keep_their_direction_and_what_is_no_number_s
     let normal = mesh.add_face_column(DVec3::ZERO, Rule::normals());
     let narrow = mesh.add_face_column(Vec3::X * 1e30, Rule::tangents());
     let f: Vec<_> = mesh.faces().collect();
-    let values = [DVec3::X * f64::MAX, dvec3(0.0, f64::MAX, f64::MAX), DVec3::ZERO, DVec3::INFINITY, DVec3::Y * 5e-324];
+    let values = [
+        DVec3::X * f64::MAX,
+        dvec3(0.0, f64::MAX, f64::MAX),
+        DVec3::ZERO,
+        DVec3::INFINITY,
+        DVec3::Y * 5e-324,
+    ];
     for (&f, v) in f.iter().zip(values) {
         mesh.set_value(tangent, f, v).expect("live");
         mesh.set_value(normal, f, v).expect("live");
