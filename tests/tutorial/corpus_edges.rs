@@ -141,6 +141,10 @@ fn unify_gives_models_back_never_crosses_three_faces_and_shows_a_cycle_where_it_
                         }
                     }
                     let mixed = IndexedMesh::new(pool.positions().to_vec(), polygons).expect("a pool");
+                    assert!(
+                        reversed == 0 || mixed.topology().volume().is_none(),
+                        "{name}: no number for what has none"
+                    );
                     let again = unify_winding(&mixed.topology()).expect("orientable");
                     // Taking a face out may leave a larger piece elsewhere; never more is turned than the half.
                     let flipped = again.report.records.len();

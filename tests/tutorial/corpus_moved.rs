@@ -242,7 +242,6 @@ fn twisted_quads_of_the_corpus_hold_the_same_volume_however_they_are_turned() {
         if !named.iter().any(|n| name.ends_with(n)) {
             continue;
         }
-        eprintln!("{name} {} {}", mesh.face_count(), mesh.is_closed());
         let Ok(solid) = mesh.closed() else { continue };
         let before = solid.volume();
         let mut worst = 0.0f64;
@@ -256,5 +255,37 @@ fn twisted_quads_of_the_corpus_hold_the_same_volume_however_they_are_turned() {
         assert!(worst < 1e-12, "{name}: {worst:e}");
         met += 1;
     }
-    assert_met(met, 2);
+    assert_met(met, 4);
+}
+
+#[test]
+fn mass_properties_of_models_are_those_of_the_tetrahedra_about_a_point() {
+    let outer = |v: DVec3| DMat3::from_cols(v * v.x, v * v.y, v * v.z);
+    let mut met = 0;
+    for (name, mesh) in solids() {
+        let (size, middle) = (reach(mesh).0, mesh.bounds().expect("vertices").center());
+        let (mut whole, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        for f in mesh.faces() {
+            let corners: Vec<DVec3> = mesh.face_vertices(f).map(|v| mesh.position(v) - middle).collect();
+            let six = corners[0].dot(corners[1].cross(corners[2]));
+            let sum: DVec3 = corners.iter().sum();
+            whole += six / 6.0;
+            first += sum * (six / 24.0);
+            second += corners.iter().fold(outer(sum), |m, &p| m + outer(p)) * (six / 120.0);
+        }
+        if whole < 1e-3 * size.powi(3) {
+            continue;
+        }
+        let center = first / whole;
+        second -= outer(center) * whole;
+        let trace = second.x_axis.x + second.y_axis.y + second.z_axis.z;
+        let inertia = DMat3::IDENTITY * trace - second;
+        let found = mesh.closed().expect("closed").mass_properties().expect("a volume");
+        assert!((found.volume - whole).abs() <= 1e-10 * whole, "{name}");
+        assert!(found.centroid.distance(center + middle) <= 1e-9 * (size + middle.length()), "{name}");
+        let off = (found.inertia - inertia).to_cols_array().into_iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        assert!(off <= 1e-9 * whole * size * size, "{name}: {} {inertia}", found.inertia);
+        met += 1;
+    }
+    assert_met(met, 30);
 }

@@ -207,11 +207,11 @@ fn models_reduced_to_an_error_bound_tell_no_larger_error_and_stay_near() {
             let near =
                 index.closest_point(p, ClosestOptions::default()).expect("asked well").expect("a point");
             worst[0] = worst[0].max(near.distance / bound);
-            assert!(near.distance <= 4.0 * bound, "{name}: {} of {bound}", near.distance);
+            assert!(near.distance <= 8.0 * bound, "{name}: {} of {bound}", near.distance);
             if mesh.is_boundary_vertex(v) {
                 let off = rim.iter().map(|&[a, b]| off_segment(p, a, b)).fold(f64::INFINITY, f64::min);
                 worst[1] = worst[1].max(off / bound);
-                assert!(off <= 4.0 * bound, "{name}: {off} of {bound} off the rim");
+                assert!(off <= 3.0 * bound, "{name}: {off} of {bound} off the rim");
             }
         }
         met += 1;
@@ -247,4 +247,23 @@ fn sharp_edges_of_models_stay_sharp_when_they_are_reduced() {
         }
     }
     assert_met(met, 200);
+}
+
+#[test]
+fn models_reduced_to_half_fold_nothing_over_and_keep_their_volume() {
+    let mut met = 0;
+    for (name, model) in solids().filter(|(_, mesh)| mesh.face_count() >= 200) {
+        let (before, size) = (volume(model), reach(model).0);
+        if before.abs() < 1e-3 * size.powi(3) {
+            continue;
+        }
+        let mut mesh = model.clone();
+        mesh.reduce(ReduceOptions { target: ReduceTarget::Ratio(0.5), ..Default::default() })
+            .expect("reduces");
+        let kept = volume(&mesh) / before;
+        eprintln!("{name}: {kept:.4}");
+        assert!((kept - 1.0).abs() < 0.005, "{name}: {kept}");
+        met += 1;
+    }
+    assert_met(met, 8);
 }
