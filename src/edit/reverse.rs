@@ -11,9 +11,8 @@ pub struct MissingFace(pub FaceKey);
 
 impl Mesh {
     /// Flips the mesh: reverses the winding of every face and negates normals, carried ones and those in columns of
-    /// [`Rule::normals`](crate::Rule::normals). Twice is the identity; all keys
-    /// stay valid, each half-edge stays with its face and now runs the other way, so that corner data moves to the
-    /// half-edge that now starts at the corner. O(slots).
+    /// [`Rule::normals`](crate::Rule::normals). Twice is the identity; all keys stay valid, each half-edge stays with its
+    /// face and now runs the other way, so that corner data moves to the half-edge that now starts at the corner. O(slots).
     ///
     /// # Examples
     /// ```

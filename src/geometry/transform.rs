@@ -118,7 +118,8 @@ impl Mesh {
     }
 
     /// Scales by one factor about an origin. A negative factor mirrors through the origin, and reverses the winding
-    /// with it: the volume goes with the cube of the factor's size. Tangents in columns are scaled too. O(vertices), or O(elements) if it mirrors.
+    /// with it: the volume goes with the cube of the factor's size. Tangents in columns are scaled too.
+    /// O(vertices), or O(elements) if it mirrors.
     ///
     /// # Errors
     /// [`TransformError`] on a factor of zero, an argument that is not finite, a mesh without vertices, or a vertex that
