@@ -382,7 +382,11 @@ impl Mesh {
             self.turn_values(kind, by, |mesh| match kind {
                 Kind::Vertex => mesh.vertices.live().collect(),
                 Kind::Edge => mesh.edges.live().collect(),
-                Kind::Corner | Kind::Face => mesh.ordered_slots(kind),
+                Kind::Face => mesh.faces.live().collect(),
+                Kind::Corner => {
+                    let sides = mesh.edges.live().flat_map(|e| [2 * e, 2 * e + 1]);
+                    sides.filter(|&h| mesh.face[h as usize] != crate::matching::NONE).collect()
+                }
             });
         }
     }

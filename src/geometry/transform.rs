@@ -146,7 +146,8 @@ impl Mesh {
     }
 
     /// Scales by a factor for each axis about an origin. If an odd number of them is negative, that mirrors, and the
-    /// winding reverses. Normals turn by the inverse transpose, tangents in columns are scaled. O(vertices), or O(elements) if it mirrors.
+    /// winding reverses. Normals turn by the inverse transpose, tangents in columns are scaled. O(vertices), or
+    /// O(elements) if it mirrors.
     ///
     /// # Errors
     /// As [`scale`](Self::scale).
@@ -170,7 +171,8 @@ impl Mesh {
     }
 
     /// Rotates about an axis through an origin by an angle in degrees, counter-clockwise seen against the axis
-    /// (Rodrigues). Multiples of 90 degrees about the coordinate axes are exact. Normals and tangents turn along. O(vertices).
+    /// (Rodrigues). Multiples of 90 degrees about the coordinate axes are exact. Normals and tangents turn along.
+    /// O(vertices).
     ///
     /// # Errors
     /// [`TransformError`] on an axis without direction, an argument that is not finite, a mesh without vertices, or a

@@ -285,7 +285,7 @@ fn columns_that_come_along_still_turn() {
     let fine = mesh.subdivide(SubdivideOptions { scheme: Scheme::Midpoint, ..Default::default() });
     let parted = mesh.unweld(UnweldOptions { degrees: 30.0, ..Default::default() }).expect("parted").value;
     let welded = parted.weld(WeldOptions::default()).expect("welded").value;
-    for mut copy in [mesh.clone(), again, fine.expect("cut").value, parted, welded] {
+    for mut copy in [mesh.clone(), mesh.reorder(), again, fine.expect("cut").value, parted, welded] {
         copy.rotate_degrees(dvec3(1.0, 2.0, 3.0), 50.0, DVec3::ZERO).expect("turned");
         copy.scale_axes(dvec3(1.0, -2.0, 1.0), DVec3::ZERO).expect("scaled");
         assert!(copy.faces().all(|f| copy.value(normals, f).distance(copy.face_normal(f)) < 1e-12));
