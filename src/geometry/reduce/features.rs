@@ -248,3 +248,32 @@ impl Mesh {
         self.columns.each(Kind::Face).any(|(i, c)| Some(i) == groups && !c.is_same(f, g))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::IndexedMesh;
+    use glam::dvec3;
+
+    #[test]
+    fn planes_summed_by_face_are_those_summed_around_each_vertex() -> Result<(), Box<dyn std::error::Error>> {
+        let hill = |i: u32| dvec3(f64::from(i % 8), f64::from(i / 8), f64::from(i * i % 7) * 0.3);
+        let squares = (0..49).map(|i| i / 7 * 8 + i % 7);
+        let triangles: Vec<_> = squares.flat_map(|a| [[a, a + 1, a + 9], [a, a + 9, a + 8]]).collect();
+        let mesh = Mesh::build(&IndexedMesh::from_triangles((0..64).map(hill).collect(), &triangles)?)?;
+        let mut copy = Copy::of(&mesh);
+        copy.mark(&mesh, &ReduceOptions { sharp_degrees: Some(40.0), ..Default::default() });
+        copy.sum_planes(10.0, false);
+        let part = copy.whole();
+        let starts = (0..).zip(part.edges.iter()).flat_map(|(e, edge): (u32, _)| (2 * e..).zip(edge.ends()));
+        for (h, v) in starts {
+            let (summed, around) = (*part.fan(v), part.fan_around(h, 10.0));
+            let difference = summed - around;
+            for x in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
+                let off = difference.about(x).at_origin().abs();
+                assert!(off <= 1e-12 * around.weight(), "{v}: {off}");
+            }
+        }
+        Ok(())
+    }
+}

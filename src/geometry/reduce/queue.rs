@@ -132,6 +132,23 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_first_bucket_and_the_number_before_another_are_those_of_a_plain_count() {
+        let keys: Vec<u16> = (0..10_000u32)
+            .map(|i| if i % 5 == 0 { PARKED } else { bucket(f64::from(i * 7919 % 613)) })
+            .collect();
+        for end in [0, bucket(1.0), bucket(100.0), bucket(f64::INFINITY), PARKED] {
+            assert_eq!(count_before(&keys, end), keys.iter().filter(|&&key| key < end).count());
+        }
+        assert_eq!(
+            least(&keys),
+            bucket(f64::from(
+                (0..10_000).filter(|i| i % 5 > 0).map(|i: u32| i * 7919 % 613).min().unwrap_or(0)
+            ))
+        );
+        assert_eq!((least(&[]), least(&[PARKED])), (PARKED, PARKED));
+    }
+
+    #[test]
     fn edges_come_out_by_cost_and_a_cost_of_any_size_has_a_bucket() {
         let mut queue = Queue::new();
         let costs = [f64::MAX, 1e-300, 2.0, 0.0, 1.0, f64::INFINITY, 1e-9];
