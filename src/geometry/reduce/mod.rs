@@ -264,8 +264,8 @@ impl Mesh {
     ///
     /// The result depends on nothing but the mesh and the options. O(n log n); a large mesh is reduced in parts, on several
     /// threads with the feature `rayon`, with the same result for any number of them. There, and in any mesh of more than
-    /// some 130,000 edges, the order is strictly that of the costs near the target alone, and before that within a factor
-    /// of two.
+    /// some 130,000 edges, the order is strictly that of the costs near the target alone; before that it is theirs within a
+    /// factor of two, but for the cheapest few.
     ///
     /// # Errors
     /// [`ReduceError`]; nothing has changed then.

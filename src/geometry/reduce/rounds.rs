@@ -1,8 +1,11 @@
 //! A large mesh in parts: each lies together in memory, and each thread has parts of its own.
 //!
 //! The parts depend on the mesh alone, and so does the result. A vertex with a neighbour in another part waits until the
-//! parts have come together. All parts go on to the next doubling of the cost together, so that the order of collapses is
-//! that of their costs but for what lies within a factor of two.
+//! parts have come together. All parts go on to the next doubling of the cost together, and each sweeps over what costs less
+//! in the order in which that lies in memory: nearly all that is looked up is at hand then, and what an edge costs has to be
+//! known only when its turn comes. The order of collapses is that of their costs but for what lies within a factor of two,
+//! for the first few, and for what became cheaper meanwhile; near the goal the steps are smaller, and the last few percent go
+//! strictly by cost.
 
 use super::attempt::Guards;
 use super::copy::Copy;
@@ -12,6 +15,8 @@ use super::queue::{DOUBLING, PARKED, count_before, least};
 use super::run::{Account, Run, Step};
 use crate::{Cancelled, Control};
 
+/// The buckets within a factor of two.
+const OCTAVE: u16 = DOUBLING as u16;
 /// A part has this many vertices or up to twice as many.
 const PART: usize = 1 << 16;
 
@@ -128,14 +133,14 @@ impl Copy {
     ) -> Result<usize, Cancelled> {
         let all = self.face_count;
         // What the seam has to give, and a rest that goes strictly by cost.
-        let goal = (faces as f64 * (0.98 - 3.0 * seam as f64 / all.max(1) as f64)).max(0.0) as usize;
+        let goal = (faces as f64 * (0.99 - 2.0 * seam as f64 / all.max(1) as f64)).max(0.0) as usize;
         let mut jobs: Vec<Job<'_>> = Vec::new();
         for part in self.parts(cuts) {
             let run = Run::new(0, guards, run.log.is_some());
             jobs.push(Job { part, run, first: PARKED, waiting: 0, share: 0 });
         }
         each(&mut jobs, |job| job.run.estimate(&mut job.part));
-        let mut removed = 0;
+        let (mut removed, mut reached) = (0, 0);
         loop {
             each(&mut jobs, |job| job.first = least(job.part.keys));
             let start = jobs.iter().map(|job| job.first).min().unwrap_or(PARKED);
@@ -147,13 +152,20 @@ impl Copy {
                 each(jobs, |job| job.waiting = count_before(job.part.keys, end));
                 jobs.iter().map(|job| job.waiting).sum::<usize>()
             };
-            let mut end = (start / DOUBLING as u16 + 1) * DOUBLING as u16;
+            // What a sweep left behind goes with the next one, and so do the first few, whatever they cost.
+            let from = start.max(reached);
+            let mut end = ((from / OCTAVE + 1) * OCTAVE).min(PARKED);
             let mut waiting = count(&mut jobs, end);
-            if waiting > 2 * left {
-                // Near the goal in smaller steps.
-                end = end.min(start + DOUBLING as u16 / 4);
+            while waiting < left / 32 && end < PARKED - OCTAVE {
+                end += OCTAVE;
                 waiting = count(&mut jobs, end);
             }
+            if waiting > 2 * left {
+                // Near the goal in smaller steps.
+                end = end.min(from + OCTAVE / 4);
+                waiting = count(&mut jobs, end);
+            }
+            reached = end;
             for job in &mut jobs {
                 job.share = (left as u64 * job.waiting as u64).div_ceil(waiting as u64) as usize;
             }
