@@ -6,7 +6,7 @@
 //! millions of the file's bytes in a second; `*_peak` is the most memory that reading takes beyond the file's bytes.
 //! `read_stl_weld` is `cleanup::index(&soup, Weld::Exact)` behind `read_stl`: a valid vertex pool from bytes.
 //!
-//! `-- --callgrind NAME [--levels N]` does the operation once, and nothing else that counts (6 by default).
+//! `-- --once NAME [--levels N]` does the operation once, for a profiler: `read_ply`, `tobj_obj` and so on.
 
 #[path = "../tests/shapes/mod.rs"]
 mod shapes;
@@ -18,6 +18,7 @@ use meshwright::{CornerData, PolygonSoup};
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
+use std::process::Command;
 use std::{env, fs};
 
 /// A file in memory: its name, what is in it, and how it is written.
@@ -48,21 +49,25 @@ const KINDS: [Kind; 9] = [
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = env::args().collect();
     let value = |flag: &str| args.iter().position(|a| a == flag).and_then(|i| args.get(i + 1));
-    let callgrind = value("--callgrind");
-    let levels = value("--levels").map_or(Ok(if callgrind.is_some() { 6 } else { 8 }), |l| l.parse())?;
+    let once = value("--once");
+    let levels = value("--levels").map_or("8", String::as_str);
     let repeats: usize = value("--repeats").map_or(Ok(5), |r| r.parse())?;
-    let only = value("--only").or(callgrind);
     let pool = match value("--shape") {
         Some(file) => shapes::from_raw(&fs::read(file)?)?,
-        None => shapes::icosphere(levels),
+        None => shapes::icosphere(levels.parse()?),
+    };
+    // How a process of its own finds the same shape.
+    let shape = match value("--shape") {
+        Some(file) => ["--shape", file],
+        None => ["--levels", levels],
     };
     let plain: PolygonSoup = pool.into();
     for kind in &KINDS {
-        let stem = |name: &String| name.trim_start_matches("read_").trim_start_matches("write_").to_owned();
-        let wanted = only.map(stem).unwrap_or_default();
-        // `--only stl_weld` and `--only tobj_data` mean operations on a kind of file.
-        let of_kind = [kind.name.to_owned(), format!("{}_weld", kind.name), kind.name.replace("obj", "tobj")];
-        if only.is_some() && !of_kind.contains(&wanted) {
+        let mut operations = kind.operations();
+        if let Some(only) = value("--only").or(once) {
+            operations.retain(|o| o.name() == *only || (once.is_none() && o.name().contains(only.as_str())));
+        }
+        if operations.is_empty() {
             continue;
         }
         let soup = if kind.has_data { with_data(&plain) } else { plain.clone() };
@@ -70,12 +75,59 @@ fn main() -> Result<(), Box<dyn Error>> {
         io::write(&soup, kind.format, kind.encoding, &mut file)?;
         // Files hold nothing of what the vector had room for.
         file.shrink_to_fit();
-        match callgrind {
-            Some(name) => callgrind_once(kind, &soup, &file, name),
-            None => time(kind, &soup, &file, repeats),
+        match once {
+            Some(_) => {
+                let soup = if operations[0].verb == "write" { soup } else { PolygonSoup::default() };
+                println!("{}", peak(|| operations[0].run(&soup, &file)));
+            }
+            None => time(kind, &operations, &soup, &file, repeats, &shape)?,
         }
     }
     Ok(())
+}
+
+/// An operation on a kind of file.
+struct Operation<'k> {
+    kind: &'k Kind,
+    /// `read`, `write`, `weld` or `tobj`.
+    verb: &'static str,
+}
+
+impl Kind {
+    fn operations(&self) -> Vec<Operation<'_>> {
+        let verbs = ["read", "write", "tobj", "weld"].into_iter().filter(|verb| match *verb {
+            "tobj" => self.format == Format::Obj,
+            "weld" => self.name == "stl",
+            _ => true,
+        });
+        verbs.map(|verb| Operation { kind: self, verb }).collect()
+    }
+}
+
+impl Operation<'_> {
+    fn name(&self) -> String {
+        match self.verb {
+            "weld" => format!("read_{}_weld", self.kind.name),
+            verb => format!("{verb}_{}", self.kind.name),
+        }
+    }
+
+    fn run(&self, soup: &PolygonSoup, file: &[u8]) {
+        match self.verb {
+            "read" => drop(black_box(read(self.kind, file))),
+            "write" => drop(black_box(write(self.kind, soup, file.len()))),
+            "tobj" => _ = black_box(tobj_alone(file)),
+            _ => _ = black_box(weld(&read(self.kind, file))),
+        }
+    }
+}
+
+/// The most memory that something takes, in bytes.
+fn peak(run: impl FnOnce()) -> u64 {
+    let _ = fs::write("/proc/self/clear_refs", "5");
+    let before = resident("VmRSS:");
+    run();
+    resident("VmHWM:").saturating_sub(before)
 }
 
 /// Normals that are the positions, and texture coordinates that are two of them.
@@ -109,69 +161,49 @@ fn weld(soup: &PolygonSoup) -> usize {
     cleanup::index(soup, Weld::Exact).expect("finite positions").value.vertex_count()
 }
 
-fn callgrind_once(kind: &Kind, soup: &PolygonSoup, file: &[u8], name: &str) {
-    if name.starts_with("write") {
-        black_box(write(kind, soup, file.len()));
-    } else if name.starts_with("tobj") {
-        black_box(tobj_alone(file));
-    } else if name.ends_with("weld") {
-        black_box(weld(&read(kind, file)));
-    } else {
-        black_box(read(kind, file));
-    }
-    println!("{} bytes\t{} faces", file.len(), soup.polygons.len());
-}
-
-/// The operations on a file: whose, which, and what it does.
-type Operation<'a> = (&'static str, String, Box<dyn FnMut() + 'a>);
-
-fn time(kind: &Kind, soup: &PolygonSoup, file: &[u8], repeats: usize) {
+fn time(
+    kind: &Kind,
+    operations: &[Operation<'_>],
+    soup: &PolygonSoup,
+    file: &[u8],
+    repeats: usize,
+    shape: &[&str],
+) -> Result<(), Box<dyn Error>> {
     let faces = soup.polygons.len() as f64;
-    let print = |who: &str, what: &str, value: f64, unit: &str| println!("{who}\t{what}\t{value:.3}\t{unit}");
-    let mut operations: Vec<Operation<'_>> = vec![
-        ("meshwright", format!("read_{}", kind.name), Box::new(|| drop(black_box(read(kind, file))))),
-        (
-            "meshwright",
-            format!("write_{}", kind.name),
-            Box::new(|| drop(black_box(write(kind, soup, file.len())))),
-        ),
-    ];
-    if kind.format == Format::Obj {
-        operations.push((
-            "tobj",
-            format!("read_{}", kind.name),
-            Box::new(|| drop(black_box(tobj_alone(file)))),
-        ));
-    }
-    if kind.name == "stl" {
-        operations.push((
-            "meshwright",
-            "read_stl_weld".to_owned(),
-            Box::new(|| drop(black_box(weld(&read(kind, file))))),
-        ));
-    }
-    print("meshwright", &format!("size_{}", kind.name), file.len() as f64 / faces, "bytes/face");
-    for (who, what, run) in operations.iter_mut().filter(|o| o.1.starts_with("read")) {
-        let _ = fs::write("/proc/self/clear_refs", "5");
-        let before = resident("VmRSS:");
-        run();
-        let peak = resident("VmHWM:").saturating_sub(before) as f64 / faces;
-        print(who, &format!("{what}_peak"), peak, "bytes/face");
-    }
+    let print = |operation: &Operation<'_>, end: &str, value: f64, unit: &str| {
+        let (who, name) = match operation.verb {
+            "tobj" => ("tobj", format!("read_{}", kind.name)),
+            _ => ("meshwright", operation.name()),
+        };
+        println!("{who}\t{name}{end}\t{value:.3}\t{unit}");
+    };
+    println!("meshwright\tsize_{}\t{:.3}\tbytes/face", kind.name, file.len() as f64 / faces);
     let mut least = vec![f64::INFINITY; operations.len()];
     for _ in 0..repeats.max(1) {
-        for ((_, _, run), least) in operations.iter_mut().zip(&mut least) {
+        for (operation, least) in operations.iter().zip(&mut least) {
             let start = ThreadTime::now();
-            run();
+            operation.run(soup, file);
             *least = least.min(start.elapsed().as_secs_f64());
         }
     }
-    for ((who, what, _), least) in operations.iter().zip(&least) {
-        print(who, what, file.len() as f64 / least / 1e6, "MB/s");
+    for (operation, least) in operations.iter().zip(&least) {
+        print(operation, "", file.len() as f64 / least / 1e6, "MB/s");
     }
-    if let Some(tobj) = operations.iter().position(|o| o.0 == "tobj") {
-        print("meshwright", &format!("read_{}_of_tobj", kind.name), least[tobj] / least[0], "ratio");
+    let of = |verb: &str| operations.iter().zip(&least).find(|o| o.0.verb == verb);
+    if let (Some((read, ours)), Some((_, theirs))) = (of("read"), of("tobj")) {
+        print(read, "_of_tobj", theirs / ours, "ratio");
     }
+    // In a process of its own that gives back what it frees: nothing of what went before may serve again.
+    for operation in operations.iter().filter(|o| o.verb != "write") {
+        let output = Command::new(env::current_exe()?)
+            .args(["--once", &operation.name()])
+            .args(shape)
+            .env("MALLOC_MMAP_THRESHOLD_", "65536")
+            .output()?;
+        let peak: f64 = String::from_utf8(output.stdout)?.trim().parse()?;
+        print(operation, "_peak", peak / faces, "bytes/face");
+    }
+    Ok(())
 }
 
 /// Resident memory of this process in bytes, by the name the system gives it; 0 where it does not tell.

@@ -1,5 +1,7 @@
 //! Every main operation on every shape that may bring out how it grows: what `growth` and `every` time.
 
+#![allow(dead_code, reason = "each bench takes the shapes it needs")]
+
 #[path = "../../tests/shapes/mod.rs"]
 pub(crate) mod shapes;
 
@@ -253,7 +255,7 @@ const OPERATIONS: &[Operation] = &[
             mesh.resolve_slivers(SliverOptions::new(tolerance)).expect("options that make sense")
         })
     }),
-    ("feature_paths", |s| run(|| s.mesh.feature_paths(FeatureOptions::default()))),
+    ("feature_paths", |s| run(|| s.mesh.feature_paths(FeatureOptions { degrees: 30.0, boundary: true }))),
     ("hub_flip", |s| at_hub(s, false, |mesh, h| mesh.flip_edge(mesh.edge(h)).is_ok())),
     ("hub_split", |s| {
         at_hub(s, false, |mesh, h| {
