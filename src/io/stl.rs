@@ -83,11 +83,11 @@ fn read_binary(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Resu
     for (block, facets) in facets[..count].chunks(BLOCK).enumerate() {
         watch.ticks(facets.len(), FACET * (count - BLOCK * block))?;
         let first = positions.len();
-        positions.extend(facets.iter().flat_map(|facet| {
+        for facet in facets {
             let (numbers, _) = facet[12..48].as_chunks();
             let at = |i: usize| f64::from(f32::from_le_bytes(numbers[i]));
-            [0, 3, 6].map(|i| DVec3::new(at(i), at(i + 1), at(i + 2)))
-        }));
+            positions.extend([0, 3, 6].map(|i| DVec3::new(at(i), at(i + 1), at(i + 2))));
+        }
         let odd = positions[first..].iter().enumerate().filter(|(_, p)| !p.is_finite());
         for (i, _) in odd {
             let byte = HEADER + FACET * (BLOCK * block + i / 3);
