@@ -8,9 +8,10 @@ fn said(text: &[u8], format: Format) -> Result<Loaded, String> {
     io::read(text, format, &limits()).map_err(|e| e.to_string())
 }
 
-/// With a remark behind every line: no line is plain any more.
+/// With a remark behind every line but those that go on: no line is plain any more.
 fn remarked(text: &[u8]) -> Vec<u8> {
     let lines = text.split_inclusive(|&b| b == b'\n').flat_map(|line| match line.strip_suffix(b"\n") {
+        Some(begun) if begun.ends_with(b"\\") => line.to_vec(),
         Some(line) => [line.strip_suffix(b"\r").unwrap_or(line), b" # so\n"].concat(),
         None => [line, b" # so"].concat(),
     });
