@@ -135,7 +135,8 @@ fn at_hub<'s>(s: &'s Subject, across: bool, f: fn(&mut Mesh, HalfedgeKey) -> boo
     let chosen: Vec<HalfedgeKey> = spokes.into_iter().map(at).collect();
     let mut mesh = s.mesh.clone();
     // The first birth after a build doubles the columns, which pays for as many births as there are elements.
-    if let Some(last) = mesh.faces().next_back() {
+    let last = mesh.faces().next_back();
+    if let Some(last) = last {
         mesh.poke_face(last, DVec3::ZERO).expect("a live face");
     }
     run(move || {

@@ -89,8 +89,10 @@ fn a_bad_coordinate_names_its_line_however_far_in() {
     }
 }
 
+type Type = (&'static str, fn(u8) -> Vec<u8>);
+
 /// The types of PLY, by name, with a number of each as bytes.
-const TYPES: [(&str, fn(u8) -> Vec<u8>); 8] = [
+const TYPES: [Type; 8] = [
     ("char", |n| vec![n]),
     ("uchar", |n| vec![n]),
     ("short", |n| i16::from(n).to_le_bytes().to_vec()),
