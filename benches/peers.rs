@@ -82,17 +82,24 @@ fn time(pool: &IndexedMesh, repeats: usize) {
 
     let (build, mesh) = best(repeats, || Mesh::build(pool).expect("a manifold"));
     print("build", nanos(build) / faces, "ns/face");
-    let (ring, sum) = best(repeats, || {
+    let ring = |mesh: &Mesh| {
         let mut sum = DVec3::ZERO;
         for v in mesh.vertices() {
             for n in mesh.neighbors(v) {
                 sum += mesh.position(n);
             }
         }
-        sum
-    });
-    print("ring", nanos(ring) / vertices, "ns/vertex");
-    print("ring_checksum", sum.element_sum(), "length");
+        sum.element_sum()
+    };
+    let (took, sum) = best(repeats, || ring(&mesh));
+    print("ring", nanos(took) / vertices, "ns/vertex");
+    print("ring_checksum", sum, "length");
+    let (took, near) = best(repeats, || mesh.reorder());
+    print("reorder", nanos(took) / faces, "ns/face");
+    let (took, sum) = best(repeats, || ring(&near));
+    print("ring_ordered", nanos(took) / vertices, "ns/vertex");
+    print("ring_ordered_checksum", sum, "length");
+    drop(near);
     let (validate, verdict) = best(repeats, || mesh.validate());
     verdict.expect("valid");
     print("validate", nanos(validate) / faces, "ns/face");

@@ -115,6 +115,11 @@ impl<K: Key> Arena<K> {
         slots
     }
 
+    /// Gives each slot, the sentinel included, its place in the user's order.
+    pub(crate) fn set_ranks(&mut self, ranks: Vec<u32>) {
+        self.ranks = ranks;
+    }
+
     /// Whether versions, slot map and ranks agree.
     pub(crate) fn is_sound(&self) -> bool {
         let mut occupied = 0;
@@ -139,10 +144,6 @@ impl<K: Key> Arena<K> {
 impl<K: Key> Arena<K> {
     pub(crate) fn set_version(&mut self, slot: u32, version: u32) {
         self.versions[slot as usize] = version;
-    }
-
-    pub(crate) fn set_ranks(&mut self, ranks: Vec<u32>) {
-        self.ranks = ranks;
     }
 }
 
