@@ -96,19 +96,24 @@ impl Subject {
     }
 }
 
+/// What comes out: it is dropped when the clock has stopped.
+pub(crate) trait Outcome {}
+
+impl<T> Outcome for T {}
+
 /// What is timed, once all before it is prepared.
-pub(crate) type Run<'s> = Box<dyn FnOnce() + 's>;
+pub(crate) type Run<'s> = Box<dyn FnOnce() -> Box<dyn Outcome + 's> + 's>;
 
 /// An operation: its name, and how it is prepared, if it makes sense for a subject.
 pub(crate) type Operation = (&'static str, fn(&Subject) -> Option<Run<'_>>);
 
 /// Does it, and keeps the compiler from seeing that nobody looks at the result.
-fn run<'s, T>(f: impl FnOnce() -> T + 's) -> Option<Run<'s>> {
-    Some(Box::new(move || drop(black_box(f()))))
+fn run<'s, T: 's>(f: impl FnOnce() -> T + 's) -> Option<Run<'s>> {
+    Some(Box::new(move || Box::new(black_box(f())) as Box<dyn Outcome + 's>))
 }
 
 /// Does it to a copy.
-fn edit<'s, T>(s: &Subject, f: impl FnOnce(&mut Mesh) -> T + 's) -> Option<Run<'s>> {
+fn edit<'s, T: 's>(s: &Subject, f: impl FnOnce(&mut Mesh) -> T + 's) -> Option<Run<'s>> {
     let mut mesh = s.mesh.clone();
     run(move || {
         let done = f(&mut mesh);

@@ -104,19 +104,20 @@ impl Mesh {
             dead_edges: Few::new(),
             dead_faces: Few::new(),
         };
-        // Its open half-edge, if the merged vertex will have one, is that of one of the ends; one that goes is not it.
+        // The open half-edge of the merged vertex, if it will have one, is that of one of the ends, or beside a triangle
+        // that goes.
         let open = [b, a].map(|v| self.vertex_halfedge[v as usize]);
         let is_inside = open.iter().all(|&h| !self.is_open(h));
         let moved = self.spokes(a);
         for &out in &moved {
             self.set_origin(out, b);
         }
-        self.close_side(h, b, true, &mut done);
+        let other = self.close_side(h, b, true, &mut done);
         let out = self.close_side(t, b, false, &mut done);
         done.dead_edges.push(self.drop_edge(h >> 1, None));
         self.drop_vertex(a, Some(b));
         let is_it = |h: &u32| self.edges.is_live(h >> 1) && self.is_open(*h) && self.origin[*h as usize] == b;
-        match open.into_iter().find(is_it) {
+        match open.into_iter().chain([other, out]).find(is_it) {
             Some(h) if self.vertex_halfedge[b as usize] == h => {}
             Some(h) => self.set_vertex_halfedge(b, h),
             None if is_inside => self.set_vertex_halfedge(b, out),
