@@ -2,8 +2,8 @@
 //!
 //! `cargo bench --bench growth [-- NAME...] [--shapes A,B] [--sizes 10000,100000,1300000] [--most SECONDS] [--repeats N]`:
 //! a line per shape and operation whose name contains one of the words, or all; nanoseconds a face at each size, and what
-//! a face costs on ten times the faces, as a multiple. Above 2 the line says `grows`, above 5 `QUADRATIC?`: larger meshes
-//! fit no cache, which may make two or three of one, never ten. What asks a thousand questions or does a thousand edits
+//! a face costs on ten times the faces, as a multiple. Above 2 the line says `grows`, above 7 `QUADRATIC?`: larger meshes
+//! fit no cache, which may make five of one where memory is scattered, never ten. What asks a thousand questions or does a thousand edits
 //! (`hub_`, `find_halfedges`, `hits`, `closest_`) is given in nanoseconds for each, and grows with the logarithm or not at
 //! all. A size that would take more than `SECONDS` (60), going by those before, is left out. One thread.
 
@@ -84,7 +84,7 @@ fn growth(times: &[(f64, f64)], is_fixed: bool) -> String {
         times.powf(10f64.ln() / (n / m).ln())
     };
     let Some(worst) = times.windows(2).map(step).max_by(f64::total_cmp) else { return String::new() };
-    let verdict = if worst > 5.0 {
+    let verdict = if worst > 7.0 {
         "\tQUADRATIC?"
     } else if worst > 2.0 {
         "\tgrows"
