@@ -3,7 +3,7 @@
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
 use super::tolerance::{ProposedTolerance, propose};
-use super::weld::weld;
+use super::weld::Welded;
 use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
 use crate::geometry::distance;
@@ -97,32 +97,33 @@ impl<'s> Pool<'s> {
                         };
                         let merged_into = exact.vertex_of.iter().map(|&v| named(v)).collect();
                         drop(exact);
-                        let pool = Self::welded(soup, merged_into, Some(proposed.tolerance), control)?;
+                        let welded = Welded::numbered(&soup.positions, merged_into);
+                        let pool = Self::welded(soup, welded, Some(proposed.tolerance), control)?;
                         Ok(Self { proposed: Some(proposed), ..pool })
                     }
                 };
             }
             Weld::Within(t) => Some(t),
         };
-        let merged_into = weld(&soup.positions, tolerance, control)?;
-        Self::welded(soup, merged_into, tolerance, control)
+        let welded = Welded::new(&soup.positions, tolerance, control)?;
+        Self::welded(soup, welded, tolerance, control)
     }
 
-    /// The pool of a soup of which each vertex is merged into the given one.
+    /// The pool of a soup with its vertices welded.
     fn welded(
         soup: &'s PolygonSoup,
-        merged_into: Vec<u32>,
+        welded: Welded,
         tolerance: Option<f64>,
         control: &mut Control<'_>,
     ) -> Result<Self, CleanError> {
         let mut pool = Self {
             soup,
-            positions: Vec::new(),
+            positions: welded.positions,
             polygons: Polygons::with_capacity(soup.polygons.len(), soup.polygons.corners().len()),
             face_source: Vec::with_capacity(soup.polygons.len()),
             corner_source: Vec::with_capacity(soup.polygons.corners().len()),
-            vertex_source: Vec::new(),
-            vertex_of: merged_into,
+            vertex_source: welded.sources,
+            vertex_of: welded.of,
             flipped: Vec::new(),
             parted: Vec::new(),
             cut: Vec::new(),
@@ -134,7 +135,7 @@ impl<'s> Pool<'s> {
             proposed: None,
             degenerate_faces: 0,
         };
-        let dropped = pool.number_vertices();
+        let dropped = pool.drop_vertices();
         let merged = soup.positions.len() - dropped - pool.positions.len();
         let repairs = pool.take_faces(dropped, control)?;
         let elements = pool.corner_source.len();
@@ -151,25 +152,14 @@ impl<'s> Pool<'s> {
         Ok(pool)
     }
 
-    /// Numbers the kept vertices in the soup's order; returns how many are not finite.
-    fn number_vertices(&mut self) -> usize {
-        let mut dropped = 0;
-        for v in 0..self.vertex_of.len() {
-            match self.vertex_of[v] {
-                NONE => {
-                    dropped += 1;
-                    self.record(Step::DropInvalid, Kind::NonFiniteVertex, Element::Vertex(v as u32), None);
-                }
-                kept if kept as usize == v => {
-                    self.vertex_of[v] = self.positions.len() as u32;
-                    self.positions.push(self.soup.positions[v]);
-                    self.vertex_source.push(v as u32);
-                }
-                // The kept vertex is lower, so it has its number.
-                kept => self.vertex_of[v] = self.vertex_of[kept as usize],
-            }
+    /// Records the vertices that are not finite; returns how many there are.
+    fn drop_vertices(&mut self) -> usize {
+        let of = self.vertex_of.iter().zip(0..);
+        let dropped: Vec<u32> = of.filter(|(of, _)| **of == NONE).map(|(_, v)| v).collect();
+        for &v in &dropped {
+            self.record(Step::DropInvalid, Kind::NonFiniteVertex, Element::Vertex(v), None);
         }
-        dropped
+        dropped.len()
     }
 
     /// Takes over the valid faces and repairs them; returns the records of repairs.
@@ -187,6 +177,23 @@ impl<'s> Pool<'s> {
             let first = soup.polygons.starts()[f] as u32;
             if f.is_multiple_of(1 << 19) {
                 control.report("repair faces", 0.3 + 0.1 * f as f64 / soup.polygons.len() as f64)?;
+            }
+            // Nearly all faces of nearly all soups.
+            if let &[a, b, c] = face
+                && let (Some(&a), Some(&b), Some(&c)) = (
+                    self.vertex_of.get(a as usize),
+                    self.vertex_of.get(b as usize),
+                    self.vertex_of.get(c as usize),
+                )
+                && a != b
+                && b != c
+                && c != a
+                && a.max(b).max(c) != NONE
+            {
+                self.polygons.push([a, b, c]);
+                self.corner_source.extend([first, first + 1, first + 2]);
+                self.face_source.push(f as u32);
+                continue;
             }
             let element = Element::Face(f as u32);
             if let Some(kind) = invalid(soup, face) {
@@ -258,8 +265,11 @@ impl<'s> Pool<'s> {
 
     /// The relation of the soup's faces to the pool's.
     pub(super) fn face_relation(&self) -> Relation {
-        let pairs = self.face_source.iter().zip(0..).map(|(&old, new)| (old, new));
-        Relation::from_pairs(self.soup.polygons.len(), self.face_source.len(), pairs)
+        let count = self.soup.polygons.len();
+        if self.face_source.len() == count && self.face_source.iter().zip(0..).all(|(&old, new)| old == new) {
+            return Relation::identity(count);
+        }
+        Relation::from_parents(count, self.face_source.clone())
     }
 
     /// Records the merges that moved a corner, in front of all records of later steps. `ended` gives the positions at
@@ -332,15 +342,10 @@ impl<'s> Pool<'s> {
 
     /// The account of a pool whose vertices stand as they were welded, at these positions.
     pub(super) fn account(&mut self, positions: &[DVec3]) -> (Report, Maps) {
-        let maps = Maps {
-            vertices: Relation::from_map(
-                &self.vertex_of.iter().map(|&v| Some(v).filter(|&v| v != NONE)).collect::<Vec<_>>(),
-                self.vertex_source.len(),
-            ),
-            faces: self.face_relation(),
-        };
         let of = std::mem::take(&mut self.vertex_of);
         self.record_merges(|v| positions.get(of[v as usize] as usize).copied());
+        let vertices = Relation::from_targets(of, self.vertex_source.len());
+        let maps = Maps { vertices, faces: self.face_relation() };
         (std::mem::take(&mut self.report), maps)
     }
 }

@@ -18,9 +18,60 @@ pub(super) fn weld(
             let own = positions.iter().zip(0..);
             Ok(own.map(|(p, i)| if p.is_finite() { i } else { NONE }).collect())
         }
-        Some(0.0) => Ok(exact(positions, control)?.unwrap_or_else(|| exact_by_sorting(positions))),
+        Some(0.0) => Ok(match exact(positions, control)? {
+            Some(welded) => welded.merged(),
+            None => exact_by_sorting(positions),
+        }),
         Some(t) if t > 0.0 && t.is_finite() => Ok(within(positions, t, control)?),
         Some(t) => Err(CleanError::BadTolerance(t)),
+    }
+}
+
+/// Vertices after a weld, numbered in the order of the lowest of those merged.
+pub(super) struct Welded {
+    /// For each vertex before, the one it is in; [`NONE`] if it is not finite.
+    pub(super) of: Vec<u32>,
+    pub(super) positions: Vec<DVec3>,
+    /// For each vertex the lowest of those merged.
+    pub(super) sources: Vec<u32>,
+}
+
+impl Welded {
+    /// As [`weld`], numbered.
+    pub(super) fn new(
+        positions: &[DVec3],
+        tolerance: Option<f64>,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
+        if tolerance != Some(0.0) {
+            return Ok(Self::numbered(positions, weld(positions, tolerance, control)?));
+        }
+        let welded = exact(positions, control)?;
+        Ok(welded.unwrap_or_else(|| Self::numbered(positions, exact_by_sorting(positions))))
+    }
+
+    /// From what each vertex is merged into.
+    pub(super) fn numbered(positions: &[DVec3], merged_into: Vec<u32>) -> Self {
+        let mut welded = Self { of: merged_into, positions: Vec::new(), sources: Vec::new() };
+        for v in 0..welded.of.len() {
+            match welded.of[v] {
+                NONE => {}
+                kept if kept as usize == v => {
+                    welded.of[v] = welded.sources.len() as u32;
+                    welded.positions.push(positions[v]);
+                    welded.sources.push(v as u32);
+                }
+                // The kept vertex is lower, so it has its number.
+                kept => welded.of[v] = welded.of[kept as usize],
+            }
+        }
+        welded
+    }
+
+    /// What each vertex is merged into.
+    fn merged(mut self) -> Vec<u32> {
+        self.of.iter_mut().filter(|v| **v != NONE).for_each(|v| *v = self.sources[*v as usize]);
+        self.of
     }
 }
 
@@ -29,40 +80,73 @@ fn bits(p: DVec3) -> [u64; 3] {
     (p + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
-/// Open addressing in the order of vertices, so the first of equals is found by the rest. `None` if probes run long: a
-/// file made to do so must not cost quadratic time.
-fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Vec<u32>>, Cancelled> {
-    const LONGEST_PROBE: usize = 256;
-    let size = (positions.len() * 2).next_power_of_two().max(2);
-    let shift = 64 - size.trailing_zeros();
-    let mut table = vec![NONE; size];
-    let mut merged = Vec::with_capacity(positions.len());
+/// A hash table of kept vertices, open addressing: the vertex's number plus one, or 0 where there is none.
+struct Table {
+    slots: Vec<u32>,
+    shift: u32,
+}
+
+impl Table {
+    /// With at least so many slots.
+    fn new(slots: usize) -> Self {
+        let size = slots.next_power_of_two().max(2);
+        Self { slots: vec![0; size], shift: 64 - size.trailing_zeros() }
+    }
+
+    /// The kept vertex at this place, or the slot for a new one. `None` if the probe runs long.
+    #[inline(always)]
+    fn find(&self, p: DVec3, kept: &[DVec3]) -> Option<Result<u32, usize>> {
+        const LONGEST_PROBE: usize = 256;
+        let mask = self.slots.len() - 1;
+        let mut slot = (hash(bits(p)) >> self.shift) as usize & mask;
+        for _ in 0..LONGEST_PROBE {
+            match self.slots[slot & mask] {
+                0 => return Some(Err(slot)),
+                // Equality of floats takes -0 for 0.
+                j if kept[j as usize - 1] == p => return Some(Ok(j - 1)),
+                _ => slot = (slot + 1) & mask,
+            }
+        }
+        None
+    }
+}
+
+/// In the order of vertices, so the first of equals is found by the rest. `None` if probes run long: a file made to do so
+/// must not cost quadratic time.
+///
+/// What is compared are the kept positions, side by side: where many share a vertex, as in a soup of triangles, they and
+/// the table are small enough for the caches.
+fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Welded>, Cancelled> {
+    let mut table = Table::new(positions.len());
+    let mut of = Vec::with_capacity(positions.len());
+    let mut kept: Vec<DVec3> = Vec::new();
+    let mut sources = Vec::new();
     for (i, &p) in positions.iter().enumerate() {
         tick(control, i, positions.len())?;
         if !p.is_finite() {
-            merged.push(NONE);
+            of.push(NONE);
             continue;
         }
-        let mut slot = (hash(bits(p)) >> shift) as usize;
-        let mut probes = 0;
-        let kept = loop {
-            match table[slot] {
-                NONE => {
-                    table[slot] = i as u32;
-                    break i as u32;
+        let number = match table.find(p, &kept) {
+            Some(Ok(number)) => number,
+            Some(Err(slot)) => {
+                kept.push(p);
+                sources.push(i as u32);
+                table.slots[slot] = kept.len() as u32;
+                if kept.len() * 2 > table.slots.len() {
+                    table = Table::new(table.slots.len() * 2);
+                    for (&p, number) in kept.iter().zip(1..) {
+                        let Some(Err(slot)) = table.find(p, &kept) else { return Ok(None) };
+                        table.slots[slot] = number;
+                    }
                 }
-                // Equality of floats takes -0 for 0.
-                j if positions[j as usize] == p => break j,
-                _ if probes == LONGEST_PROBE => return Ok(None),
-                _ => {
-                    probes += 1;
-                    slot = (slot + 1) & (size - 1);
-                }
+                kept.len() as u32 - 1
             }
+            None => return Ok(None),
         };
-        merged.push(kept);
+        of.push(number);
     }
-    Ok(Some(merged))
+    Ok(Some(Welded { of, positions: kept, sources }))
 }
 
 /// Reports now and then; the weld is the first three tenths of a clean-up.
@@ -195,9 +279,21 @@ mod tests {
 
         #[test]
         fn exact_welding_equals_the_quadratic_loop(points in lattice()) {
-            prop_assert_eq!(exact(&points, &mut Control::none()).unwrap().unwrap(), naive(&points, 0.0));
+            let welded = exact(&points, &mut Control::none()).unwrap().unwrap();
+            let again = Welded::numbered(&points, naive(&points, 0.0));
+            prop_assert_eq!((&welded.of, &welded.sources), (&again.of, &again.sources));
+            prop_assert_eq!(&welded.positions, &again.positions);
+            prop_assert_eq!(welded.merged(), naive(&points, 0.0));
             prop_assert_eq!(exact_by_sorting(&points), naive(&points, 0.0));
         }
+    }
+
+    #[test]
+    fn exact_welding_of_vertices_that_are_all_apart_keeps_them_all() {
+        let points: Vec<DVec3> = (0..5000).map(|i| DVec3::splat(f64::from(i))).collect();
+        let welded = exact(&points, &mut Control::none()).unwrap().unwrap();
+        assert_eq!(welded.positions, points);
+        assert_eq!(welded.merged(), (0..5000).collect::<Vec<u32>>());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Vertex and face normals.
 
-use super::{direction, unit_scale};
+use super::{direction, distance, unit_scale};
 use crate::mesh::read;
 use crate::{FaceKey, Mesh, Polygons, VertexKey};
 use glam::DVec3;
@@ -37,25 +37,55 @@ pub(crate) fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     2.0 * (u - v).length().atan2((u + v).length())
 }
 
+/// Twice the area vector of a triangle, to the bit that of its three corners as a polygon.
+fn double_area(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+    DVec3::ZERO + (b - a).cross(c - a)
+}
+
 pub(crate) fn vertex_normals(positions: &[DVec3], polygons: &Polygons, weight: NormalWeight) -> Vec<DVec3> {
-    let scale = unit_scale(positions.iter().copied());
-    let at = |v: u32| positions[v as usize] * scale;
-    let mut sums = vec![DVec3::ZERO; positions.len()];
+    let mut sums = Sums::new(positions.iter().copied(), positions.len(), weight);
     for corners in polygons.iter() {
-        let area = double_area_vector(corners.iter().map(|&v| at(v)));
-        match weight {
-            NormalWeight::Area => corners.iter().for_each(|&v| sums[v as usize] += area),
+        sums.add(positions, corners);
+    }
+    sums.directions()
+}
+
+/// The normals of faces summed at their vertices.
+struct Sums {
+    scale: f64,
+    weight: NormalWeight,
+    sums: Vec<DVec3>,
+}
+
+impl Sums {
+    fn new(used: impl Iterator<Item = DVec3>, count: usize, weight: NormalWeight) -> Self {
+        Self { scale: unit_scale(used), weight, sums: vec![DVec3::ZERO; count] }
+    }
+
+    #[inline]
+    fn add(&mut self, positions: &[DVec3], corners: &[u32]) {
+        let at = |v: u32| positions[v as usize] * self.scale;
+        let area = match *corners {
+            [a, b, c] => double_area(at(a), at(b), at(c)),
+            _ => double_area_vector(corners.iter().map(|&v| at(v))),
+        };
+        match self.weight {
+            NormalWeight::Area => corners.iter().for_each(|&v| self.sums[v as usize] += area),
             NormalWeight::Angle => {
                 let normal = direction(area);
                 let n = corners.len();
                 for i in 0..n {
                     let (a, b, c) = (corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n]);
-                    sums[b as usize] += normal * angle(at(a), at(b), at(c));
+                    self.sums[b as usize] += normal * angle(at(a), at(b), at(c));
                 }
             }
         }
     }
-    sums.into_iter().map(direction).collect()
+
+    fn directions(mut self) -> Vec<DVec3> {
+        self.sums.iter_mut().for_each(|sum| *sum = direction(*sum));
+        self.sums
+    }
 }
 
 impl Mesh {
@@ -112,13 +142,38 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn compute_normals(&mut self, weight: NormalWeight) {
-        let pool = self.to_indexed();
-        let computed = pool.vertex_normals(weight);
-        let mut column = vec![DVec3::ZERO; self.vertices.slot_count()];
-        for (slot, normal) in self.vertices.in_user_order().into_iter().zip(computed) {
-            column[slot as usize] = normal;
-        }
-        self.replace_normals(column);
+        let used = self.vertices.live().map(|v| self.positions[v as usize]);
+        let mut sums = Sums::new(used, self.vertices.slot_count(), weight);
+        let mut polygon = Vec::new();
+        self.for_each_in_user_order(|f| {
+            let h = self.face_halfedge[f as usize];
+            let (next, prev) = (self.next[h as usize], self.prev[h as usize]);
+            if self.next[next as usize] == prev {
+                sums.add(&self.positions, &[h, next, prev].map(|h| self.origin[h as usize]));
+            } else {
+                polygon.clear();
+                polygon.extend(self.loop_slots(h).map(|h| self.origin[h as usize]));
+                sums.add(&self.positions, &polygon);
+            }
+        });
+        self.replace_normals(sums.directions());
+    }
+
+    /// The unit normals of all faces, in the order of [`faces`](Self::faces), each as [`face_normal`](Self::face_normal)
+    /// has it. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
+    /// assert_eq!(mesh.face_normals(), [DVec3::Z]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn face_normals(&self) -> Vec<DVec3> {
+        let mut normals = Vec::with_capacity(self.face_count());
+        normals.extend(self.faces.live().map(|f| self.normal_of_face(f)));
+        normals
     }
 
     /// Where a half-edge starts.
@@ -126,27 +181,44 @@ impl Mesh {
         self.positions[self.origin[h as usize] as usize]
     }
 
+    #[inline]
     pub(crate) fn normal_of_face(&self, f: u32) -> DVec3 {
-        let first = self.corner_across_longest(self.face_halfedge[f as usize]);
-        let corners = || self.loop_slots(first).map(|h| self.at(h));
+        let h = self.face_halfedge[f as usize];
+        let halfedges = [h, self.next[h as usize], self.prev[h as usize]];
+        if self.next[halfedges[1] as usize] == halfedges[2] {
+            return triangle_normal(halfedges.map(|h| self.at(h)));
+        }
+        let corners = || self.loop_slots(h).map(|h| self.at(h));
         let scale = unit_scale(corners());
         direction(double_area_vector(corners().map(|p| p * scale)))
     }
+}
 
-    /// The half-edge of a triangle whose origin lies across from its longest side: of a sliver, only the product of the
-    /// two shorter sides keeps the digits of the normal. The half-edge itself on other faces.
-    fn corner_across_longest(&self, h: u32) -> u32 {
-        let [a, b, c] = [h, self.next[h as usize], self.prev[h as usize]];
-        if self.next[b as usize] != c {
-            return h;
-        }
-        let across = |h: u32| super::distance(self.at(self.next[h as usize]), self.at(self.prev[h as usize]));
-        [b, c]
-            .into_iter()
-            .fold((a, across(a)), |best, h| {
-                let length = across(h);
-                if length > best.1 { (h, length) } else { best }
-            })
-            .0
+/// The unit normal of a triangle, from the corner across its longest side: of a sliver, only the product of the two
+/// shorter sides keeps the digits of the normal.
+fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+    let [a, b, c] = corners;
+    let scale = unit_scale(corners.into_iter());
+    let [a, b, c] = match across_longest(corners) {
+        0 => [a, b, c],
+        1 => [b, c, a],
+        _ => [c, a, b],
     }
+    .map(|p| p * scale);
+    direction(double_area(a, b, c))
+}
+
+/// Which corner lies across from the longest side; the first of equals.
+#[inline]
+fn across_longest([a, b, c]: [DVec3; 3]) -> usize {
+    // Far from the ends of the range the squares tell, unless unequal ones have roots that may round to the same number.
+    const SAFE: std::ops::Range<f64> = 1e-200..1e200;
+    let across = [c - b, a - c, b - a].map(|side| side.length_squared());
+    let longest = across[0].max(across[1]).max(across[2]);
+    let is_clear = |&x: &f64| SAFE.contains(&x) && (x == longest || x * (1.0 + 1e-14) < longest);
+    if across.iter().all(is_clear) {
+        return if across[0] == longest { 0 } else { 2 - usize::from(across[1] == longest) };
+    }
+    let across = [distance(b, c), distance(c, a), distance(a, b)];
+    (1..3).fold(0, |best, i| if across[i] > across[best] { i } else { best })
 }
