@@ -181,8 +181,7 @@ impl Timer<'_> {
         for (name, weight) in [("normals", NormalWeight::Area), ("normals_angle", NormalWeight::Angle)] {
             // Of vertices, which the mesh then carries, and of faces.
             self.seconds_on(name, &mesh, 1.0, "s", |mesh| {
-                mesh.compute_normals(weight);
-                black_box(mesh.face_normals());
+                black_box(mesh.compute_all_normals(weight));
             });
         }
         if let Ok(closed) = mesh.closed() {

@@ -119,9 +119,9 @@ impl<'s> Pool<'s> {
         let mut pool = Self {
             soup,
             positions: welded.positions,
-            polygons: Polygons::with_capacity(soup.polygons.len(), soup.polygons.corners().len()),
-            face_source: Vec::with_capacity(soup.polygons.len()),
-            corner_source: Vec::with_capacity(soup.polygons.corners().len()),
+            polygons: Polygons::new(),
+            face_source: Vec::new(),
+            corner_source: Vec::new(),
             vertex_source: welded.sources,
             vertex_of: welded.of,
             flipped: Vec::new(),
@@ -169,6 +169,13 @@ impl<'s> Pool<'s> {
         control: &mut Control<'_>,
     ) -> Result<Vec<Record>, Cancelled> {
         let soup = self.soup;
+        if self.take_intact() {
+            self.report.steps.push(StepSummary::new(Step::DropInvalid, dropped_vertices));
+            return Ok(Vec::new());
+        }
+        self.polygons = Polygons::with_capacity(soup.polygons.len(), soup.polygons.corners().len());
+        self.face_source.reserve(soup.polygons.len());
+        self.corner_source.reserve(soup.polygons.corners().len());
         let mut repairs = Vec::new();
         let mut repair = PolygonRepair::default();
         let (mut welded, mut pieces) = (Vec::new(), Polygons::new());
@@ -177,23 +184,6 @@ impl<'s> Pool<'s> {
             let first = soup.polygons.starts()[f] as u32;
             if f.is_multiple_of(1 << 19) {
                 control.report("repair faces", 0.3 + 0.1 * f as f64 / soup.polygons.len() as f64)?;
-            }
-            // Nearly all faces of nearly all soups.
-            if let &[a, b, c] = face
-                && let (Some(&a), Some(&b), Some(&c)) = (
-                    self.vertex_of.get(a as usize),
-                    self.vertex_of.get(b as usize),
-                    self.vertex_of.get(c as usize),
-                )
-                && a != b
-                && b != c
-                && c != a
-                && a.max(b).max(c) != NONE
-            {
-                self.polygons.push([a, b, c]);
-                self.corner_source.extend([first, first + 1, first + 2]);
-                self.face_source.push(f as u32);
-                continue;
             }
             let element = Element::Face(f as u32);
             if let Some(kind) = invalid(soup, face) {
@@ -222,6 +212,28 @@ impl<'s> Pool<'s> {
         }
         self.report.steps.push(StepSummary::new(Step::DropInvalid, dropped));
         Ok(repairs)
+    }
+
+    /// Takes over the faces as they are, if all are triangles and none needs repair: nearly all soups. Says whether it did.
+    fn take_intact(&mut self) -> bool {
+        let faces = &self.soup.polygons;
+        let corners = faces.corners();
+        if corners.len() != 3 * faces.len() || faces.iter().any(|f| f.len() != 3) {
+            return false;
+        }
+        let mut welded = Vec::with_capacity(corners.len());
+        let of = |v: u32| self.vertex_of.get(v as usize).copied().unwrap_or(NONE);
+        for face in corners.chunks_exact(3) {
+            let [a, b, c] = [of(face[0]), of(face[1]), of(face[2])];
+            if a.max(b).max(c) == NONE || a == b || b == c || c == a {
+                return false;
+            }
+            welded.extend([a, b, c]);
+        }
+        self.polygons = Polygons::with_starts(faces.starts().to_vec(), welded);
+        self.corner_source = (0..corners.len() as u32).collect();
+        self.face_source = (0..faces.len() as u32).collect();
+        true
     }
 
     pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {

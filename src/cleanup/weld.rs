@@ -93,21 +93,36 @@ impl Table {
         Self { slots: vec![0; size], shift: 64 - size.trailing_zeros() }
     }
 
-    /// The kept vertex at this place, or the slot for a new one. `None` if the probe runs long.
+    /// Where the search for a place begins.
     #[inline(always)]
-    fn find(&self, p: DVec3, kept: &[DVec3]) -> Option<Result<u32, usize>> {
+    fn home(&self, p: DVec3) -> usize {
+        (hash(bits(p)) >> self.shift) as usize
+    }
+
+    /// The kept vertex at this place, or the slot for a new one, from where the search begins. `None` if it takes long.
+    fn find(&self, p: DVec3, home: usize, kept: &[DVec3]) -> Option<Result<u32, usize>> {
         const LONGEST_PROBE: usize = 256;
         let mask = self.slots.len() - 1;
-        let mut slot = (hash(bits(p)) >> self.shift) as usize & mask;
+        let mut slot = home;
         for _ in 0..LONGEST_PROBE {
             match self.slots[slot & mask] {
-                0 => return Some(Err(slot)),
+                0 => return Some(Err(slot & mask)),
                 // Equality of floats takes -0 for 0.
                 j if kept[j as usize - 1] == p => return Some(Ok(j - 1)),
-                _ => slot = (slot + 1) & mask,
+                _ => slot += 1,
             }
         }
         None
+    }
+
+    /// Twice the size.
+    fn grow(&mut self, kept: &[DVec3]) -> Option<()> {
+        *self = Self::new(self.slots.len() * 2);
+        for (&p, number) in kept.iter().zip(1..) {
+            let slot = self.find(p, self.home(p), kept)?.err()?;
+            self.slots[slot] = number;
+        }
+        Some(())
     }
 }
 
@@ -115,36 +130,48 @@ impl Table {
 /// must not cost quadratic time.
 ///
 /// What is compared are the kept positions, side by side: where many share a vertex, as in a soup of triangles, they and
-/// the table are small enough for the caches.
+/// the table are small enough for the caches. Vertices go in batches, so that the memory that all of a batch need is
+/// fetched at once; nearly all are found where their search begins.
 fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Welded>, Cancelled> {
-    let mut table = Table::new(positions.len());
+    const BATCH: usize = 64;
+    let mut table = Table::new((positions.len() / 2).max(4 * BATCH));
     let mut of = Vec::with_capacity(positions.len());
     let mut kept: Vec<DVec3> = Vec::new();
     let mut sources = Vec::new();
-    for (i, &p) in positions.iter().enumerate() {
-        tick(control, i, positions.len())?;
-        if !p.is_finite() {
-            of.push(NONE);
-            continue;
+    let (mut homes, mut numbers) = ([0; BATCH], [NONE; BATCH]);
+    for batch in positions.chunks(BATCH) {
+        let done = of.len();
+        tick(control, done, positions.len())?;
+        if 2 * (kept.len() + BATCH) > table.slots.len() && table.grow(&kept).is_none() {
+            return Ok(None);
         }
-        let number = match table.find(p, &kept) {
-            Some(Ok(number)) => number,
-            Some(Err(slot)) => {
-                kept.push(p);
-                sources.push(i as u32);
-                table.slots[slot] = kept.len() as u32;
-                if kept.len() * 2 > table.slots.len() {
-                    table = Table::new(table.slots.len() * 2);
-                    for (&p, number) in kept.iter().zip(1..) {
-                        let Some(Err(slot)) = table.find(p, &kept) else { return Ok(None) };
-                        table.slots[slot] = number;
-                    }
-                }
-                kept.len() as u32 - 1
+        for ((&p, home), number) in batch.iter().zip(&mut homes).zip(&mut numbers) {
+            *home = table.home(p);
+            *number = table.slots[*home];
+        }
+        let last = kept.len().saturating_sub(1);
+        for (&p, number) in batch.iter().zip(&mut numbers) {
+            // Where nothing is in the slot, the last kept vertex is as good as any.
+            let j = (*number as usize).wrapping_sub(1).min(last);
+            let same = kept.get(j).is_some_and(|q| (q.x == p.x) & (q.y == p.y) & (q.z == p.z));
+            *number = if same { j as u32 } else { NONE };
+        }
+        for (i, (&p, number)) in batch.iter().zip(&mut numbers).enumerate() {
+            if *number != NONE || !p.is_finite() {
+                continue;
             }
-            None => return Ok(None),
-        };
-        of.push(number);
+            *number = match table.find(p, homes[i], &kept) {
+                Some(Ok(number)) => number,
+                Some(Err(slot)) => {
+                    kept.push(p);
+                    sources.push((done + i) as u32);
+                    table.slots[slot] = kept.len() as u32;
+                    kept.len() as u32 - 1
+                }
+                None => return Ok(None),
+            };
+        }
+        of.extend_from_slice(&numbers[..batch.len()]);
     }
     Ok(Some(Welded { of, positions: kept, sources }))
 }

@@ -62,13 +62,13 @@ impl Sums {
         Self { scale: unit_scale(used), weight, sums: vec![DVec3::ZERO; count] }
     }
 
-    #[inline]
     fn add(&mut self, positions: &[DVec3], corners: &[u32]) {
+        if let &[a, b, c] = corners {
+            let corners = [a, b, c];
+            return self.add_triangle(corners, corners.map(|v| positions[v as usize]));
+        }
         let at = |v: u32| positions[v as usize] * self.scale;
-        let area = match *corners {
-            [a, b, c] => double_area(at(a), at(b), at(c)),
-            _ => double_area_vector(corners.iter().map(|&v| at(v))),
-        };
+        let area = double_area_vector(corners.iter().map(|&v| at(v)));
         match self.weight {
             NormalWeight::Area => corners.iter().for_each(|&v| self.sums[v as usize] += area),
             NormalWeight::Angle => {
@@ -79,6 +79,22 @@ impl Sums {
                     self.sums[b as usize] += normal * angle(at(a), at(b), at(c));
                 }
             }
+        }
+    }
+
+    #[inline]
+    fn add_triangle(&mut self, corners: [u32; 3], points: [DVec3; 3]) {
+        let [a, b, c] = points.map(|p| p * self.scale);
+        let area = double_area(a, b, c);
+        let parts = match self.weight {
+            NormalWeight::Area => [area; 3],
+            NormalWeight::Angle => {
+                let normal = direction(area);
+                [angle(c, a, b), angle(a, b, c), angle(b, c, a)].map(|angle| normal * angle)
+            }
+        };
+        for (v, part) in corners.into_iter().zip(parts) {
+            self.sums[v as usize] += part;
         }
     }
 
@@ -142,21 +158,66 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn compute_normals(&mut self, weight: NormalWeight) {
+        let sums = self.normal_sums(weight, |_, _| {});
+        self.replace_normals(sums.directions());
+    }
+
+    /// As [`compute_normals`](Self::compute_normals), and gives the unit normals of all faces as
+    /// [`face_normals`](Self::face_normals) does, in one pass over the faces. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
+    /// assert_eq!(mesh.compute_all_normals(NormalWeight::Area), mesh.face_normals());
+    /// assert!(mesh.vertices().all(|v| mesh.normal(v) == Some(DVec3::Z)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn compute_all_normals(&mut self, weight: NormalWeight) -> Vec<DVec3> {
+        let mut at_faces = Vec::with_capacity(self.face_count());
+        let in_order = self.faces.is_in_user_order();
+        let sums = self.normal_sums(weight, |f, triangle| {
+            if in_order {
+                at_faces.push(triangle.map_or_else(|| self.normal_of_face(f), triangle_normal));
+            }
+        });
+        self.replace_normals(sums.directions());
+        if in_order { at_faces } else { self.face_normals() }
+    }
+
+    /// The normals of faces summed at vertex slots. `each` is called with every face, in the user's order, and its corners if
+    /// it is a triangle.
+    fn normal_sums(&self, weight: NormalWeight, mut each: impl FnMut(u32, Option<[DVec3; 3]>)) -> Sums {
         let used = self.vertices.live().map(|v| self.positions[v as usize]);
         let mut sums = Sums::new(used, self.vertices.slot_count(), weight);
         let mut polygon = Vec::new();
         self.for_each_in_user_order(|f| {
             let h = self.face_halfedge[f as usize];
-            let (next, prev) = (self.next[h as usize], self.prev[h as usize]);
-            if self.next[next as usize] == prev {
-                sums.add(&self.positions, &[h, next, prev].map(|h| self.origin[h as usize]));
-            } else {
-                polygon.clear();
-                polygon.extend(self.loop_slots(h).map(|h| self.origin[h as usize]));
-                sums.add(&self.positions, &polygon);
+            match self.triangle_slots(h) {
+                Some(halfedges) => {
+                    let corners = halfedges.map(|h| self.origin[h as usize]);
+                    let points = corners.map(|v| self.positions[v as usize]);
+                    sums.add_triangle(corners, points);
+                    each(f, Some(points));
+                }
+                None => {
+                    polygon.clear();
+                    polygon.extend(self.loop_slots(h).map(|h| self.origin[h as usize]));
+                    sums.add(&self.positions, &polygon);
+                    each(f, None);
+                }
             }
         });
-        self.replace_normals(sums.directions());
+        sums
+    }
+
+    /// The half-edges of a triangle from one of them; `None` for other faces.
+    #[inline]
+    fn triangle_slots(&self, h: u32) -> Option<[u32; 3]> {
+        let second = self.next[h as usize];
+        let third = self.next[second as usize];
+        (self.next[third as usize] == h).then_some([h, second, third])
     }
 
     /// The unit normals of all faces, in the order of [`faces`](Self::faces), each as [`face_normal`](Self::face_normal)
@@ -184,8 +245,7 @@ impl Mesh {
     #[inline]
     pub(crate) fn normal_of_face(&self, f: u32) -> DVec3 {
         let h = self.face_halfedge[f as usize];
-        let halfedges = [h, self.next[h as usize], self.prev[h as usize]];
-        if self.next[halfedges[1] as usize] == halfedges[2] {
+        if let Some(halfedges) = self.triangle_slots(h) {
             return triangle_normal(halfedges.map(|h| self.at(h)));
         }
         let corners = || self.loop_slots(h).map(|h| self.at(h));
@@ -214,7 +274,8 @@ fn across_longest([a, b, c]: [DVec3; 3]) -> usize {
     // Far from the ends of the range the squares tell, unless unequal ones have roots that may round to the same number.
     const SAFE: std::ops::Range<f64> = 1e-200..1e200;
     let across = [c - b, a - c, b - a].map(|side| side.length_squared());
-    let longest = across[0].max(across[1]).max(across[2]);
+    let longer = |x: f64, y: f64| if y > x { y } else { x };
+    let longest = longer(longer(across[0], across[1]), across[2]);
     let is_clear = |&x: &f64| SAFE.contains(&x) && (x == longest || x * (1.0 + 1e-14) < longest);
     if across.iter().all(is_clear) {
         return if across[0] == longest { 0 } else { 2 - usize::from(across[1] == longest) };
