@@ -137,17 +137,23 @@ impl Timer<'_> {
             mesh = Mesh::build(pool).expect("a manifold");
         }
         if self.wants("ring") {
-            let (ring, sum) = best(self.repeats, || {
+            let ring = |mesh: &Mesh| {
                 let mut sum = DVec3::ZERO;
                 for v in mesh.vertices() {
                     for n in mesh.neighbors(v) {
                         sum += mesh.position(n);
                     }
                 }
-                sum
-            });
-            print("ring", nanos(ring) / vertices, "ns/vertex");
-            print("ring_checksum", sum.element_sum(), "length");
+                sum.element_sum()
+            };
+            let (took, sum) = best(self.repeats, || ring(&mesh));
+            print("ring", nanos(took) / vertices, "ns/vertex");
+            print("ring_checksum", sum, "length");
+            let (took, near) = best(self.repeats, || mesh.reorder());
+            print("reorder", nanos(took) / faces, "ns/face");
+            let (took, sum) = best(self.repeats, || ring(&near));
+            print("ring_ordered", nanos(took) / vertices, "ns/vertex");
+            print("ring_ordered_checksum", sum, "length");
         }
         if self.wants("validate") {
             let (validate, verdict) = best(self.repeats, || mesh.validate());

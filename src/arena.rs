@@ -15,7 +15,8 @@ pub(crate) struct Arena<K: Key> {
     slots: SlotMap<K, ()>,
     /// The version of each slot as slotmap has it while occupied (odd), 0 while free. Slot 0 is slotmap's sentinel.
     versions: Vec<u32>,
-    /// Where each slot stands in the user's order; empty while that is the order of slots.
+    /// Where each slot stands in the user's order, below the number of slots, or `u32::MAX` if it was added since; empty
+    /// while that is the order of slots.
     ranks: Vec<u32>,
 }
 
@@ -146,14 +147,29 @@ impl<K: Key> Arena<K> {
         self.ranks.is_empty() && self.slot_count() == self.len() + 1
     }
 
-    /// Live slots in the user's order.
+    /// Live slots in the user's order. O(slots).
     pub(crate) fn in_user_order(&self) -> Vec<u32> {
         let mut slots: Vec<u32> = Vec::with_capacity(self.len());
-        slots.extend(self.live());
-        if !self.ranks.is_empty() {
-            slots.sort_unstable_by_key(|&s| (self.ranks[s as usize], s));
+        if self.ranks.is_empty() {
+            slots.extend(self.live());
+            return slots;
         }
+        // Slot 0, the sentinel, stands for none.
+        let mut at = vec![0; self.slot_count()];
+        let mut added = Vec::new();
+        for slot in self.live() {
+            match at.get_mut(self.ranks[slot as usize] as usize) {
+                Some(place) => *place = slot,
+                None => added.push(slot),
+            }
+        }
+        slots.extend(at.into_iter().filter(|&slot| slot != 0).chain(added));
         slots
+    }
+
+    /// Gives each slot, the sentinel included, its place in the user's order; no two of them the same.
+    pub(crate) fn set_ranks(&mut self, ranks: Vec<u32>) {
+        self.ranks = ranks;
     }
 
     /// Whether versions, slot map and ranks agree.
@@ -182,10 +198,6 @@ impl<K: Key> Arena<K> {
     pub(crate) fn set_version(&mut self, slot: u32, version: u32) {
         self.settle();
         self.versions[slot as usize] = version;
-    }
-
-    pub(crate) fn set_ranks(&mut self, ranks: Vec<u32>) {
-        self.ranks = ranks;
     }
 }
 

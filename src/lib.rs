@@ -41,6 +41,7 @@ pub mod io;
 mod key;
 mod matching;
 mod mesh;
+mod order;
 mod parallel;
 mod query;
 mod report;
