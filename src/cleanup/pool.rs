@@ -17,6 +17,8 @@ pub(super) struct Pool<'s> {
     pub(super) soup: &'s PolygonSoup,
     pub(super) positions: Vec<DVec3>,
     pub(super) polygons: Polygons,
+    /// Whether all faces are as they were, and the sources of faces and corners are not [listed](Self::list) yet.
+    unlisted: bool,
     /// For each face the soup's face it was made of.
     pub(super) face_source: Vec<u32>,
     /// For each corner the soup's corner it was; from the number of the soup's corners on, one of `blends`.
@@ -78,6 +80,17 @@ impl<'s> Pool<'s> {
         how: Weld,
         control: &mut Control<'_>,
     ) -> Result<Self, CleanError> {
+        let mut pool = Self::unlisted(soup, how, control)?;
+        pool.list();
+        Ok(pool)
+    }
+
+    /// The same, perhaps without the sources of faces and corners: enough to be accounted for, if there are no attributes.
+    pub(super) fn unlisted(
+        soup: &'s PolygonSoup,
+        how: Weld,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
         let elements = soup.positions.len().max(soup.polygons.len()).max(soup.polygons.corners().len());
         if elements > MAX_ELEMENTS {
             return Err(CleanError::TooLarge { elements });
@@ -120,6 +133,7 @@ impl<'s> Pool<'s> {
             soup,
             positions: welded.positions,
             polygons: Polygons::new(),
+            unlisted: false,
             face_source: Vec::new(),
             corner_source: Vec::new(),
             vertex_source: welded.sources,
@@ -138,7 +152,7 @@ impl<'s> Pool<'s> {
         let dropped = pool.drop_vertices();
         let merged = soup.positions.len() - dropped - pool.positions.len();
         let repairs = pool.take_faces(dropped, control)?;
-        let elements = pool.corner_source.len();
+        let elements = pool.polygons.corners().len();
         if elements > MAX_ELEMENTS {
             // Cutting faces into triangles can triple their corners.
             return Err(CleanError::TooLarge { elements });
@@ -231,9 +245,16 @@ impl<'s> Pool<'s> {
             welded.extend([a, b, c]);
         }
         self.polygons = Polygons::with_starts(faces.starts().to_vec(), welded);
-        self.corner_source = (0..corners.len() as u32).collect();
-        self.face_source = (0..faces.len() as u32).collect();
+        self.unlisted = true;
         true
+    }
+
+    /// Writes down where faces and corners come from.
+    fn list(&mut self) {
+        if std::mem::take(&mut self.unlisted) {
+            self.corner_source = (0..self.polygons.corners().len() as u32).collect();
+            self.face_source = (0..self.polygons.len() as u32).collect();
+        }
     }
 
     pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {
@@ -278,7 +299,8 @@ impl<'s> Pool<'s> {
     /// The relation of the soup's faces to the pool's.
     pub(super) fn face_relation(&self) -> Relation {
         let count = self.soup.polygons.len();
-        if self.face_source.len() == count && self.face_source.iter().zip(0..).all(|(&old, new)| old == new) {
+        let all_stay = || self.face_source.iter().zip(0..).all(|(&old, new)| old == new);
+        if self.unlisted || self.face_source.len() == count && all_stay() {
             return Relation::identity(count);
         }
         Relation::from_parents(count, self.face_source.clone())

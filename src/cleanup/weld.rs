@@ -136,8 +136,10 @@ fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Welded
     const BATCH: usize = 64;
     let mut table = Table::new((positions.len() / 2).max(4 * BATCH));
     let mut of = Vec::with_capacity(positions.len());
-    let mut kept: Vec<DVec3> = Vec::new();
-    let mut sources = Vec::new();
+    // A closed surface has half as many vertices as triangles: room for a soup of those, of which no more is touched than
+    // is used.
+    let mut kept: Vec<DVec3> = Vec::with_capacity(positions.len() / 5);
+    let mut sources = Vec::with_capacity(positions.len() / 5);
     let (mut homes, mut numbers) = ([0; BATCH], [NONE; BATCH]);
     for batch in positions.chunks(BATCH) {
         let done = of.len();
@@ -173,6 +175,8 @@ fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Welded
         }
         of.extend_from_slice(&numbers[..batch.len()]);
     }
+    kept.shrink_to_fit();
+    sources.shrink_to_fit();
     Ok(Some(Welded { of, positions: kept, sources }))
 }
 

@@ -254,32 +254,63 @@ impl Mesh {
     }
 }
 
-/// The unit normal of a triangle, from the corner across its longest side: of a sliver, only the product of the two
-/// shorter sides keeps the digits of the normal.
-fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
-    let [a, b, c] = corners;
-    let scale = unit_scale(corners.into_iter());
-    let [a, b, c] = match across_longest(corners) {
-        0 => [a, b, c],
-        1 => [b, c, a],
-        _ => [c, a, b],
-    }
-    .map(|p| p * scale);
-    direction(double_area(a, b, c))
-}
-
-/// Which corner lies across from the longest side; the first of equals.
+/// The unit normal of a triangle, from the corner across its longest side (the first of equals): of a sliver, only the
+/// product of the two shorter sides keeps the digits of the normal.
 #[inline]
-fn across_longest([a, b, c]: [DVec3; 3]) -> usize {
+fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
     // Far from the ends of the range the squares tell, unless unequal ones have roots that may round to the same number.
     const SAFE: std::ops::Range<f64> = 1e-200..1e200;
-    let across = [c - b, a - c, b - a].map(|side| side.length_squared());
+    let scale = unit_scale(corners.into_iter());
+    let [a, b, c] = corners.map(|p| p * scale);
+    // Each side with the one after it, as they run into and out of the corner between them.
+    let sides = [b - a, c - b, a - c];
+    let across = [sides[1], sides[2], sides[0]].map(|side| side.length_squared());
     let longer = |x: f64, y: f64| if y > x { y } else { x };
     let longest = longer(longer(across[0], across[1]), across[2]);
-    let is_clear = |&x: &f64| SAFE.contains(&x) && (x == longest || x * (1.0 + 1e-14) < longest);
-    if across.iter().all(is_clear) {
-        return if across[0] == longest { 0 } else { 2 - usize::from(across[1] == longest) };
-    }
+    let is_clear = |x: f64| SAFE.contains(&x) & ((x == longest) | (x * (1.0 + 1e-14) < longest));
+    let corner = if is_clear(across[0]) & is_clear(across[1]) & is_clear(across[2]) {
+        // Without a branch that nobody can foresee.
+        usize::from(across[0] != longest) * (1 + usize::from(across[1] != longest))
+    } else {
+        by_distance(corners)
+    };
+    // The product of the sides out of the corner, of which one is turned round twice.
+    direction(DVec3::ZERO + sides[[2, 0, 1][corner]].cross(sides[corner]))
+}
+
+/// Which corner lies across from the longest side; the first of equals. Safe for any lengths.
+#[cold]
+fn by_distance([a, b, c]: [DVec3; 3]) -> usize {
     let across = [distance(b, c), distance(c, a), distance(a, b)];
     (1..3).fold(0, |best, i| if across[i] > across[best] { i } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+    use proptest::prelude::*;
+
+    /// As the definition has it.
+    fn naive(corners: [DVec3; 3]) -> DVec3 {
+        let scale = unit_scale(corners.into_iter());
+        let from = by_distance(corners);
+        let turned = (0..3).map(|i| corners[(from + i) % 3] * scale);
+        direction(double_area_vector(turned))
+    }
+
+    proptest! {
+        #[test]
+        fn the_normal_of_a_triangle_is_that_of_the_polygon_from_the_corner_across_its_longest_side(
+            mut coordinates in prop::array::uniform9(prop_oneof![-1.0f64..1.0, (-2i32..3).prop_map(f64::from)]),
+            size in prop_oneof![Just(1.0), Just(1e-300), Just(1e300), Just(1e-160), Just(3e100)],
+            flat in 0usize..9,
+        ) {
+            coordinates[flat] *= 1e-9;
+            let [x, y, z, u, v, w, p, q, r] = coordinates.map(|c| c * size);
+            let corners = [dvec3(x, y, z), dvec3(u, v, w), dvec3(p, q, r)];
+            let bits = |n: DVec3| n.to_array().map(f64::to_bits);
+            prop_assert_eq!(bits(triangle_normal(corners)), bits(naive(corners)));
+        }
+    }
 }
