@@ -134,7 +134,8 @@ impl<K: Key> Arena<K> {
 
     /// Live slots, ascending.
     pub(crate) fn live(&self) -> impl DoubleEndedIterator<Item = u32> + Clone + '_ {
-        (1..self.slot_count() as u32).filter(|&slot| self.is_live(slot))
+        let settled = self.versions.iter().enumerate().filter(|&(_, &v)| v != 0).map(|(i, _)| i as u32);
+        (1..self.fresh + 1).chain(settled)
     }
 
     /// Whether the user's order is that of slots.

@@ -1,6 +1,6 @@
 //! Vertex and face normals.
 
-use super::{direction, distance, unit_scale};
+use super::{direction, distance, is_tame, unit_scale};
 use crate::mesh::read;
 use crate::{FaceKey, Mesh, Polygons, VertexKey};
 use glam::DVec3;
@@ -58,8 +58,9 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(used: impl Iterator<Item = DVec3>, count: usize, weight: NormalWeight) -> Self {
-        Self { scale: unit_scale(used), weight, sums: vec![DVec3::ZERO; count] }
+    fn new(used: impl Iterator<Item = DVec3> + Clone, count: usize, weight: NormalWeight) -> Self {
+        let scale = if is_tame(used.clone()) { 1.0 } else { unit_scale(used) };
+        Self { scale, weight, sums: vec![DVec3::ZERO; count] }
     }
 
     fn add(&mut self, positions: &[DVec3], corners: &[u32]) {
@@ -84,7 +85,7 @@ impl Sums {
 
     #[inline]
     fn add_triangle(&mut self, corners: [u32; 3], points: [DVec3; 3]) {
-        let [a, b, c] = points.map(|p| p * self.scale);
+        let [a, b, c] = if self.scale == 1.0 { points } else { points.map(|p| p * self.scale) };
         let area = double_area(a, b, c);
         let parts = match self.weight {
             NormalWeight::Area => [area; 3],
@@ -177,9 +178,10 @@ impl Mesh {
     pub fn compute_all_normals(&mut self, weight: NormalWeight) -> Vec<DVec3> {
         let mut at_faces = Vec::with_capacity(self.face_count());
         let in_order = self.faces.is_in_user_order();
+        let normal_of = self.triangle_rule();
         let sums = self.normal_sums(weight, |f, triangle| {
             if in_order {
-                at_faces.push(triangle.map_or_else(|| self.normal_of_face(f), triangle_normal));
+                at_faces.push(triangle.map_or_else(|| self.normal_of_face(f), normal_of));
             }
         });
         self.replace_normals(sums.directions());
@@ -233,8 +235,19 @@ impl Mesh {
     /// ```
     pub fn face_normals(&self) -> Vec<DVec3> {
         let mut normals = Vec::with_capacity(self.face_count());
-        normals.extend(self.faces.live().map(|f| self.normal_of_face(f)));
+        let normal_of = self.triangle_rule();
+        self.faces.live().for_each(|f| {
+            let triangle = self.triangle_slots(self.face_halfedge[f as usize]);
+            let points = triangle.map(|halfedges| halfedges.map(|h| self.at(h)));
+            normals.push(points.map_or_else(|| self.normal_of_face(f), normal_of));
+        });
         normals
+    }
+
+    /// How the normals of triangles are found: without scaling where it changes no bit.
+    fn triangle_rule(&self) -> fn([DVec3; 3]) -> DVec3 {
+        let used = self.vertices.live().map(|v| self.positions[v as usize]);
+        if is_tame(used) { tame_triangle_normal } else { triangle_normal }
     }
 
     /// Where a half-edge starts.
@@ -256,25 +269,31 @@ impl Mesh {
 
 /// The unit normal of a triangle, from the corner across its longest side (the first of equals): of a sliver, only the
 /// product of the two shorter sides keeps the digits of the normal.
-#[inline]
 fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
-    // Far from the ends of the range the squares tell, unless unequal ones have roots that may round to the same number.
-    const SAFE: std::ops::Range<f64> = 1e-200..1e200;
     let scale = unit_scale(corners.into_iter());
     let [a, b, c] = corners.map(|p| p * scale);
     // Each side with the one after it, as they run into and out of the corner between them.
     let sides = [b - a, c - b, a - c];
+    let corner = by_distance(corners);
+    direction(DVec3::ZERO + sides[(corner + 2) % 3].cross(sides[corner]))
+}
+
+/// The same to the bit, if the coordinates are [tame](is_tame).
+#[inline]
+fn tame_triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+    let [a, b, c] = corners;
+    let sides = [b - a, c - b, a - c];
     let across = [sides[1], sides[2], sides[0]].map(|side| side.length_squared());
     let longer = |x: f64, y: f64| if y > x { y } else { x };
     let longest = longer(longer(across[0], across[1]), across[2]);
-    let is_clear = |x: f64| SAFE.contains(&x) & ((x == longest) | (x * (1.0 + 1e-14) < longest));
+    // The squares tell, unless unequal ones have roots that may round to the same number.
+    let is_clear = |x: f64| (x == longest) | (x * (1.0 + 1e-14) < longest);
     let corner = if is_clear(across[0]) & is_clear(across[1]) & is_clear(across[2]) {
         // Without a branch that nobody can foresee.
         usize::from(across[0] != longest) * (1 + usize::from(across[1] != longest))
     } else {
         by_distance(corners)
     };
-    // The product of the sides out of the corner, of which one is turned round twice.
     direction(DVec3::ZERO + sides[[2, 0, 1][corner]].cross(sides[corner]))
 }
 
@@ -311,6 +330,9 @@ mod tests {
             let corners = [dvec3(x, y, z), dvec3(u, v, w), dvec3(p, q, r)];
             let bits = |n: DVec3| n.to_array().map(f64::to_bits);
             prop_assert_eq!(bits(triangle_normal(corners)), bits(naive(corners)));
+            if is_tame(corners.into_iter()) {
+                prop_assert_eq!(bits(tame_triangle_normal(corners)), bits(naive(corners)));
+            }
         }
     }
 }
