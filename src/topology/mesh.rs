@@ -15,7 +15,9 @@ impl Mesh {
     }
 
     pub(crate) fn boundary_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        self.edges.live().flat_map(|e| [2 * e, 2 * e + 1]).filter(|&h| self.face[h as usize] == NONE)
+        // Dead slots may hold anything, so few of the entries are looked at twice.
+        let open = self.face.iter().zip(0u32..).filter(|(f, _)| **f == NONE).map(|(_, h)| h);
+        open.filter(|h| self.edges.is_live(h >> 1))
     }
 
     /// The boundary loops (naked edges), each as its half-edges in [`next`](Self::next) order, in the order of their
