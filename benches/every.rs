@@ -1,7 +1,7 @@
 //! Every main operation on 10 thousand, 100 thousand, 1.3 and 2 million triangles, in memory order and scattered.
 //!
 //! `cargo bench --bench every [-- FILTER...]`: names are `every::SHAPE_FACES_OPERATION`, filters regular expressions, such as
-//! `torus_2000000_reduce` or `scattered.*loop`; `-- --list` lists them. Without a filter, the two smaller sizes only.
+//! `torus_2000000_reduce` or `scattered.*loop`. Without a filter, the two smaller sizes only.
 //! `-- --help` tells what [divan](https://docs.rs/divan) has to offer beside. For how time grows, see `growth`.
 
 mod operations;
@@ -30,7 +30,7 @@ impl fmt::Display for Case {
 }
 
 fn cases() -> impl Iterator<Item = Case> {
-    let is_asked = std::env::args().skip(1).any(|a| !a.starts_with("--") || a == "--list");
+    let is_asked = std::env::args().skip(1).any(|a| !a.starts_with("--"));
     let most = if is_asked { usize::MAX } else { 100_000 };
     let sizes = [10_000, 100_000, 1_300_000, 2_000_000].into_iter().filter(move |n| *n <= most);
     let shapes = ["torus", "scattered"].into_iter();

@@ -88,6 +88,7 @@ build() {
 build ""
 build _threads --features rayon
 "$out/meshwright_peers" --write "$out"
+"$out/meshwright_query" --write "$out"
 
 load() { cut -d' ' -f1-3 /proc/loadavg; }
 echo "load at the start $(load)" >&2
@@ -107,12 +108,11 @@ for shape in $shapes; do
     if [ ${#openmesh[@]} -gt 0 ]; then say "$out/openmesh_operations" "$raw" 1 "$out/$shape.openmesh.ply"; fi
     say "$out/cgal_operations" "$raw" 1
     say "$out/crates/release/meshwright-peers" mesh "$raw" 1 "$out/$shape.meshopt_f32.ply"
-    say "$out/meshwright_query" --shape "$raw" --write "$out/$shape.questions"
+    say "$out/meshwright_query" --time "$out/$shape.questions" --repeats "$repeats"
     say "$out/embree" "$out/$shape.questions" "$repeats"
     say "$out/crates/release/meshwright-peers" query "$out/$shape.questions" 1
     say "$out/meshwright_io" --shape "$raw"
     for threads in 1 2; do
-      "$out/meshwright_peers_threads" --clock "$raw" --threads "$threads" --repeats "$repeats" >> "$lines"
       "$out/meshwright_reduce_threads" --shape "$raw" --threads "$threads" --repeats "$repeats" \
         --write "$out/$shape.threads$threads.ply" | sed -n "s/^meshwright\treduce_clock\t/threads$threads\treduce\t/p" >> "$lines"
     done

@@ -126,7 +126,6 @@ def bars(shapes):
         yield from threads("reduce", shape, "reduce", 1.4)
         for op in ("loop", "catmull_clark", "midpoint", "normals"):
             yield from faster(op.replace("_", "-"), shape, op, 1.5)
-            yield from threads(op.replace("_", "-"), shape, op, 1.0)
         yield from faster("unify", shape, "unify", 8, "cgal")
         yield from faster("weld of the soup", shape, "weld_soup", 8, "cgal")
         yield from faster("soup to validated mesh", shape, "soup_to_mesh", 5, "cgal")
