@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let repeats = value("--repeats").map_or(Ok(5), |r| r.parse())?;
     let pool = value("--time").map_or(Ok(shapes::icosphere(6)), |file| {
-        fs::read(file).map_err(Box::<dyn Error>::from).and_then(|raw| Ok(shapes::from_raw(&raw)?))
+        fs::read(file).map_err(Box::<dyn Error>::from).and_then(|raw| shapes::from_raw(&raw))
     })?;
     let timer = Timer { repeats, only: value("--only").map(String::as_str).unwrap_or_default() };
     timer.mesh(&pool);
@@ -139,7 +139,8 @@ impl Timer<'_> {
         if self.wants("memory") {
             // The first element that is removed and the first that is added make the arenas keep versions.
             let f = mesh.faces().next().expect("a face");
-            mesh.poke_face(f, DVec3::ZERO).and_then(|new| Ok(mesh.dissolve_vertex(new.vertex))).ok();
+            let new = mesh.poke_face(f, DVec3::ZERO).expect("finite");
+            mesh.dissolve_vertex(new.vertex).expect("takes it back");
             print("memory_edited", mesh.heap_bytes() as f64 / faces, "bytes/face");
             mesh = Mesh::build(pool).expect("a manifold");
         }
