@@ -53,12 +53,12 @@ impl Welded {
     /// From what each vertex is merged into.
     pub(super) fn numbered(positions: &[DVec3], merged_into: Vec<u32>) -> Self {
         let mut welded = Self { of: merged_into, positions: Vec::new(), sources: Vec::new() };
-        for v in 0..welded.of.len() {
+        for (v, &p) in positions.iter().enumerate() {
             match welded.of[v] {
                 NONE => {}
                 kept if kept as usize == v => {
                     welded.of[v] = welded.sources.len() as u32;
-                    welded.positions.push(positions[v]);
+                    welded.positions.push(p);
                     welded.sources.push(v as u32);
                 }
                 // The kept vertex is lower, so it has its number.
