@@ -2,7 +2,7 @@
 
 use super::MeshIndex;
 use super::batch::each_piece;
-use super::bvh::{INNER, Node, WIDTH};
+use super::bvh::{Frame, Node, WIDTH};
 use super::facet::{Contact, Facet, meet};
 use crate::{Cancelled, Control, FaceKey, Mesh};
 use glam::DVec3;
@@ -328,20 +328,19 @@ impl<'i> Search<'i> {
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let around = tree.boxed(low, high);
         let mut own: Option<Facet> = None;
-        let mut stack: SmallVec<[u32; 64]> = SmallVec::from_slice(&[0]);
-        while let Some(at) = stack.pop() {
+        let mut stack: SmallVec<[(u32, Frame); 64]> = tree.root().into_iter().collect();
+        while let Some((at, frame)) = stack.pop() {
             let node = &tree.nodes[at as usize];
-            let mut met = meets(node, &around);
+            let mut met = meets(node, &frame, &around);
             while met != 0 {
-                let i = met.trailing_zeros() as usize;
+                let i = met.trailing_zeros() as usize % WIDTH;
                 met &= met - 1;
-                let (child, count) = (node.child[i], node.count[i]);
-                if count == INNER {
-                    stack.push(child);
+                if let Some(child) = node.inner(i) {
+                    stack.push((child, frame.of_child(node, i)));
                     continue;
                 }
-                work += u64::from(count);
-                for other in child..child + u32::from(count) {
+                work += node.leaf(i).len() as u64;
+                for other in node.leaf(i) {
                     if self.first_of(other) <= first {
                         continue;
                     }
@@ -392,16 +391,15 @@ fn cuts(index: &MeshIndex<'_>) -> Vec<u8> {
 
 /// Which children's boxes meet a box.
 #[inline]
-fn meets(node: &Node, (low, high): &([f32; 3], [f32; 3])) -> u32 {
+fn meets(node: &Node, frame: &Frame, (low, high): &([f32; 3], [f32; 3])) -> u32 {
     let mut apart = [false; WIDTH];
     for axis in 0..3 {
-        let (lows, highs) = (node.sides(axis), node.sides(axis + 3));
+        let (lows, highs) = (node.sides(frame, axis), node.sides(frame, axis + 3));
         for i in 0..WIDTH {
             apart[i] |= (lows[i] > high[axis]) | (highs[i] < low[axis]);
         }
     }
-    let is_met = |i: usize| !apart[i] & (node.count[i] > 0);
-    (0..WIDTH).fold(0, |met, i| met | u32::from(is_met(i)) << i)
+    (0..WIDTH).fold(0, |met, i| met | u32::from(!apart[i]) << i) & node.children()
 }
 
 /// Leaves of each pair of faces what is strongest, and of that what was found first.

@@ -9,6 +9,7 @@ mod contains;
 mod coplanar;
 mod exact;
 mod facet;
+mod grow;
 mod index;
 mod intersections;
 mod mass;
