@@ -167,6 +167,7 @@ impl<'t> Cast<'t> {
                     }
                     continue;
                 };
+                self.tree.touch(child);
                 let mut j = stack.len();
                 stack.push((enter[i], child, frame.of_child(node, i)));
                 // The nearest on top.

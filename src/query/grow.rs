@@ -127,7 +127,14 @@ impl<'p> Twig<'p> {
             let primitives = &mut own[range.start - passed..];
             let (own, left) = order.split_at_mut(range.len());
             let frame = frame.of_child(&node, i);
-            twigs.push(Self { primitives, order: own, first: after, depth: depth + 1, frame, at: nodes.len() });
+            twigs.push(Self {
+                primitives,
+                order: own,
+                first: after,
+                depth: depth + 1,
+                frame,
+                at: nodes.len(),
+            });
             nodes.push(Node::EMPTY);
             (rest, order, passed, after) = (behind, left, range.end, after + range.len() as u32);
         }
@@ -178,7 +185,9 @@ type Parts = SmallVec<[(Range<usize>, Bounds); WIDTH]>;
 fn parts(primitives: &mut [Primitive], depth: u32) -> Parts {
     let mut parts = Parts::new();
     if primitives.len() <= WIDTH {
-        parts.extend(primitives.iter().enumerate().map(|(i, p)| (i..i + 1, Bounds { low: p.low, high: p.high })));
+        parts.extend(
+            primitives.iter().enumerate().map(|(i, p)| (i..i + 1, Bounds { low: p.low, high: p.high })),
+        );
         return parts;
     }
     parts.push((0..primitives.len(), Bounds::of(primitives)));
@@ -216,9 +225,8 @@ fn split(primitives: &mut [Primitive], balanced: bool) -> (usize, Bounds, Bounds
     };
     let count = count.unwrap_or_else(|| {
         let key = |p: &Primitive| p.middle()[axis];
-        let order = |a: &Primitive, b: &Primitive| {
-            key(a).total_cmp(&key(b)).then(a.triangle().cmp(&b.triangle()))
-        };
+        let order =
+            |a: &Primitive, b: &Primitive| key(a).total_cmp(&key(b)).then(a.triangle().cmp(&b.triangle()));
         primitives.select_nth_unstable_by(primitives.len() / 2, order);
         primitives.len() / 2
     });
@@ -255,7 +263,8 @@ fn sorted_split(primitives: &mut [Primitive], axis: usize) -> (usize, Bounds, Bo
 /// Primitives parted between two bins of one axis; `None` if all middles are the same.
 fn binned_split(primitives: &mut [Primitive], middles: &Bounds) -> Option<(usize, Bounds, Bounds)> {
     let used = if primitives.len() <= 4 * BINS { BINS / 2 } else { BINS };
-    let per_unit = (middles.high - middles.low).map(|e| if e > 0.0 { used as f32 * 0.999_999 / e } else { 0.0 });
+    let per_unit =
+        (middles.high - middles.low).map(|e| if e > 0.0 { used as f32 * 0.999_999 / e } else { 0.0 });
     // Rounded to the nearest, there being no fractions in single precision from there on: the last bits are the bin.
     let bins_of = |p: &Primitive| {
         let at = (p.middle() - middles.low) * per_unit - Vec4::splat(0.5) + Vec4::splat(WHOLE);

@@ -64,6 +64,7 @@ impl<'t> Probe<'t> {
                     }
                     continue;
                 };
+                self.tree.touch(child);
                 // The nearest on top.
                 let mut j = stack.len();
                 stack.push((distances[i], child, frame.of_child(node, i)));
