@@ -9,7 +9,6 @@ use super::exact::rounded;
 use super::grow::{Bounds, Primitive, grown};
 use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
-use crate::matching::NONE;
 use crate::{Cancelled, Control};
 use glam::{DVec3, Vec4};
 use std::ops::Range;
@@ -31,19 +30,24 @@ pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     /// The root's grid.
     root: Frame,
-    /// Corners as indices of `points`, with [`CUT`]; those of a leaf lie together.
-    triangles: Vec<[u32; 3]>,
-    /// The face each triangle belongs to, by the caller's number.
-    pub(crate) faces: Vec<u32>,
-    /// Scaled and on the grid of [`rounded`], in the order in which triangles name them.
-    pub(crate) points: Vec<DVec3>,
-    /// The caller's number of each point.
-    pub(crate) vertices: Vec<u32>,
+    /// Those of a leaf lie together.
+    triangles: Vec<Triangle>,
     pub(crate) scale: f64,
     /// What the boxes are relative to, scaled.
     pub(crate) center: DVec3,
     /// No point is farther from the center, scaled.
     pub(crate) radius: f64,
+}
+
+/// All that is asked of a triangle, in one place, because each is one of millions and seldom in a cache.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    /// The corners, scaled and on the grid of [`rounded`].
+    places: [DVec3; 3],
+    /// The caller's numbers of the corners, with [`CUT`].
+    corners: [u32; 3],
+    /// The caller's number of the face it belongs to.
+    face: u32,
 }
 
 /// The grid on which the boxes in a node lie. All lines are exact in single precision.
@@ -209,50 +213,38 @@ impl Tree {
         triangles: impl ExactSizeIterator<Item = ([u32; 3], u32)>,
         scale: f64,
     ) -> Self {
-        let mut number = vec![NONE; positions.len()];
-        let mut tree = Self {
-            nodes: vec![],
-            root: Frame::default(),
-            triangles: Vec::with_capacity(triangles.len()),
-            faces: Vec::with_capacity(triangles.len()),
-            points: vec![],
-            vertices: vec![],
-            scale,
-            center: DVec3::ZERO,
-            radius: 0.0,
-        };
-        for (corners, face) in triangles {
-            let corners = corners.map(|v| {
-                let of = &mut number[(v & !CUT) as usize];
-                if *of == NONE {
-                    *of = tree.points.len() as u32;
-                    tree.points.push(rounded(positions[(v & !CUT) as usize] * scale));
-                    tree.vertices.push(v & !CUT);
-                }
-                *of | v & CUT
-            });
-            tree.triangles.push(corners);
-            tree.faces.push(face);
-        }
-        tree.points.shrink_to_fit();
-        tree.vertices.shrink_to_fit();
-        tree
+        let place = |v: u32| rounded(positions[(v & !CUT) as usize] * scale);
+        let whole = |(corners, face): ([u32; 3], u32)| Triangle { places: corners.map(place), corners, face };
+        Self { triangles: triangles.map(whole).collect(), scale, ..Self::default() }
     }
 
-    /// The corners of a triangle, as indices of points.
+    /// The caller's numbers of the corners of a triangle.
+    #[inline]
     pub(crate) fn corners(&self, triangle: u32) -> [u32; 3] {
-        self.triangles[triangle as usize].map(|v| v & !CUT)
+        self.triangles[triangle as usize].corners.map(|v| v & !CUT)
     }
 
     /// Whether the edge from a corner to the next is an edge of the face.
+    #[inline]
     pub(crate) fn is_edge(&self, triangle: u32, corner: usize) -> bool {
-        self.triangles[triangle as usize][corner] & CUT == 0
+        self.triangles[triangle as usize].corners[corner] & CUT == 0
     }
 
     /// The corners' positions, scaled.
     #[inline]
     pub(crate) fn places(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.points[(v & !CUT) as usize])
+        self.triangles[triangle as usize].places
+    }
+
+    /// The caller's number of the face a triangle belongs to.
+    #[inline]
+    pub(crate) fn face(&self, triangle: u32) -> u32 {
+        self.triangles[triangle as usize].face
+    }
+
+    /// The faces of all triangles.
+    pub(crate) fn faces(&self) -> impl Iterator<Item = u32> + '_ {
+        self.triangles.iter().map(|t| t.face)
     }
 
     /// A box in the terms of the nodes': whatever meets it meets their boxes.
@@ -280,9 +272,7 @@ impl Tree {
     /// Heap bytes held.
     pub(crate) fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>()
-            + self.triangles.capacity() * 12
-            + (self.faces.capacity() + self.vertices.capacity()) * 4
-            + self.points.capacity() * size_of::<DVec3>()
+            + self.triangles.capacity() * size_of::<Triangle>()
     }
 }
 

@@ -332,7 +332,7 @@ impl<'t> Cast<'t> {
                     }
                 };
                 let cut =
-                    if self.is_edge(triangle, part) { 0 } else { self.tree.faces[triangle as usize] + 1 };
+                    if self.is_edge(triangle, part) { 0 } else { self.tree.face(triangle) + 1 };
                 let along = if is_swapped { 1.0 - along } else { along };
                 Touched { key: (corners[i], corners[j], cut), part, t, along }
             }

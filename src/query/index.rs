@@ -180,11 +180,11 @@ impl<'m> MeshIndex<'m> {
     }
 
     pub(super) fn corner_slots(&self, triangle: u32) -> [u32; 3] {
-        self.tree.corners(triangle).map(|v| self.tree.vertices[v as usize])
+        self.tree.corners(triangle)
     }
 
     pub(super) fn face_slot(&self, triangle: u32) -> u32 {
-        self.tree.faces[triangle as usize]
+        self.tree.face(triangle)
     }
 
     /// The half-edge of the triangle's face from a corner to the next; `None` if that is a cut.

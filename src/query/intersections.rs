@@ -153,7 +153,7 @@ impl MeshIndex<'_> {
         }
         all.cut();
         let key = |f: u32| self.mesh.faces.key(f);
-        let first_unsearched = all.first_unsearched.map(|t| key(self.tree.faces[t as usize]));
+        let first_unsearched = all.first_unsearched.map(|t| key(self.tree.face(t)));
         let pair = |p: Pair| FacePair {
             faces: p.faces.map(key),
             contact: p.contact,
@@ -257,13 +257,13 @@ impl<'i> Search<'i> {
             return search;
         }
         search.starts = vec![0; mesh.faces.slot_count() + 1];
-        tree.faces.iter().for_each(|&f| search.starts[f as usize + 1] += 1);
+        tree.faces().for_each(|f| search.starts[f as usize + 1] += 1);
         for f in 1..search.starts.len() {
             search.starts[f] += search.starts[f - 1];
         }
         let mut next = search.starts.clone();
         search.by_face = vec![0; count];
-        for (triangle, &f) in (0..).zip(&tree.faces) {
+        for (triangle, f) in (0..).zip(tree.faces()) {
             let at = &mut next[f as usize];
             search.by_face[*at as usize] = triangle;
             *at += 1;
@@ -278,7 +278,7 @@ impl<'i> Search<'i> {
     }
 
     fn first_of(&self, triangle: u32) -> u32 {
-        let face = self.index.tree.faces[triangle as usize] as usize;
+        let face = self.index.tree.face(triangle) as usize;
         if self.starts.is_empty() { triangle } else { self.by_face[self.starts[face] as usize] }
     }
 
@@ -304,7 +304,7 @@ impl<'i> Search<'i> {
                 continue;
             }
             let mut enough = 1024;
-            for &piece in &self.by_face[self.range(tree.faces[first as usize])] {
+            for &piece in &self.by_face[self.range(tree.face(first))] {
                 if found.may_search(piece) {
                     found.work += self.triangle(first, piece, &mut |pair| of_face.push(pair));
                 }
@@ -323,7 +323,7 @@ impl<'i> Search<'i> {
     fn triangle(&self, first: u32, piece: u32, push: &mut impl FnMut(Pair)) -> u64 {
         let mut work = 0;
         let tree = &self.index.tree;
-        let face = tree.faces[piece as usize];
+        let face = tree.face(piece);
         let [a, b, c] = tree.places(piece);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let around = tree.boxed(low, high);
@@ -351,7 +351,7 @@ impl<'i> Search<'i> {
                     }
                     work += TEST;
                     let own = own.get_or_insert_with(|| self.facet(piece));
-                    let (facet, of_other) = (self.facet(other), tree.faces[other as usize]);
+                    let (facet, of_other) = (self.facet(other), tree.face(other));
                     let met = if face < of_other { meet(own, &facet) } else { meet(&facet, own) };
                     if let Some((contact, place)) = met {
                         push(Pair { faces: [face.min(of_other), face.max(of_other)], contact, place });
@@ -373,7 +373,7 @@ fn cuts(index: &MeshIndex<'_>) -> Vec<u8> {
     let mut flat: Vec<(u32, u32, u32)> = Vec::new();
     for (triangle, cuts) in (0..).zip(&mut cuts) {
         if *cuts != 0 && !Facet::new(tree.places(triangle), [false; 3]).has_area() {
-            let (face, of) = (tree.faces[triangle as usize], tree.corners(triangle));
+            let (face, of) = (tree.face(triangle), tree.corners(triangle));
             flat.extend((0..3).map(|i| (face, of[(i + 1) % 3], of[i])));
             *cuts = 0;
         }
@@ -381,7 +381,7 @@ fn cuts(index: &MeshIndex<'_>) -> Vec<u8> {
     flat.sort_unstable();
     if !flat.is_empty() {
         for (triangle, cuts) in (0..).zip(&mut cuts) {
-            let (face, of) = (tree.faces[triangle as usize], tree.corners(triangle));
+            let (face, of) = (tree.face(triangle), tree.corners(triangle));
             let is_flat = |i: usize| flat.binary_search(&(face, of[i], of[(i + 1) % 3])).is_ok();
             (0..3).filter(|&i| is_flat(i)).for_each(|i| *cuts &= !(1 << i));
         }
