@@ -265,14 +265,21 @@ impl Tree {
         std::hint::black_box(self.nodes[node as usize].kinds[0]);
     }
 
+    /// The same for a triangle.
+    #[inline(always)]
+    pub(crate) fn touch_triangle(&self, triangle: u32) {
+        if let Some(t) = self.triangles.get(triangle as usize) {
+            std::hint::black_box(t.places[1].x);
+        }
+    }
+
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
     /// Heap bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>()
-            + self.triangles.capacity() * size_of::<Triangle>()
+        self.nodes.capacity() * size_of::<Node>() + self.triangles.capacity() * size_of::<Triangle>()
     }
 }
 

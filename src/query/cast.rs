@@ -157,14 +157,13 @@ impl<'t> Cast<'t> {
             let node = &self.tree.nodes[at as usize];
             let (enter, mut met) = self.meets(node, &frame, limit);
             let bottom = stack.len();
+            let mut leaves = 0u32;
             while met != 0 {
                 let i = met.trailing_zeros() as usize % WIDTH;
                 met &= met - 1;
                 let Some(child) = node.inner(i) else {
-                    // At once: what they lie on is fetched for all of them together.
-                    if enter[i] <= limit {
-                        limit = leaf(node.leaf(i));
-                    }
+                    self.tree.touch_triangle(node.leaf(i).start);
+                    leaves |= 1 << i;
                     continue;
                 };
                 self.tree.touch(child);
@@ -174,6 +173,13 @@ impl<'t> Cast<'t> {
                 while ordered && j > bottom && stack[j - 1].0 < stack[j].0 {
                     stack.swap(j - 1, j);
                     j -= 1;
+                }
+            }
+            while leaves != 0 {
+                let i = leaves.trailing_zeros() as usize % WIDTH;
+                leaves &= leaves - 1;
+                if enter[i] <= limit {
+                    limit = leaf(node.leaf(i));
                 }
             }
         }
@@ -331,8 +337,7 @@ impl<'t> Cast<'t> {
                         _ => t.min(-f64::MIN_POSITIVE),
                     }
                 };
-                let cut =
-                    if self.is_edge(triangle, part) { 0 } else { self.tree.face(triangle) + 1 };
+                let cut = if self.is_edge(triangle, part) { 0 } else { self.tree.face(triangle) + 1 };
                 let along = if is_swapped { 1.0 - along } else { along };
                 Touched { key: (corners[i], corners[j], cut), part, t, along }
             }
