@@ -259,6 +259,14 @@ impl Tree {
         (!self.nodes.is_empty()).then_some((0, self.root))
     }
 
+    /// A number that is close for points close to each other (Morton, "A Computer Oriented Geodetic Data Base", 1966).
+    pub(crate) fn point_key(&self, point: DVec3) -> u64 {
+        let at = (point * self.scale - self.center) * (512.0 / (2.0 * self.radius));
+        // A cast keeps what is far away, and what is no number, at the ends.
+        let of = at.to_array().map(|x| ((x + 512.0) as u64).min(1023));
+        (0..10).rev().fold(0, |key, bit| of.iter().fold(key, |key, x| key << 1 | x >> bit & 1))
+    }
+
     /// Has a node fetched while others are looked at.
     #[inline(always)]
     pub(crate) fn touch(&self, node: u32) {

@@ -187,7 +187,7 @@ impl<'t> Cast<'t> {
 
     /// Where the ray enters each child, and which children it meets before the limit.
     #[inline(always)]
-    fn meets(&self, node: &Node, frame: &Frame, limit: f32) -> ([f32; WIDTH], u32) {
+    pub(super) fn meets(&self, node: &Node, frame: &Frame, limit: f32) -> ([f32; WIDTH], u32) {
         let mut enter = [0.0f32; WIDTH];
         let mut exit = [limit; WIDTH];
         for axis in 0..3 {

@@ -1,6 +1,6 @@
 //! Nearest elements: vertices, edges, faces, face centres, points of the surface.
 
-use super::batch::each_with;
+use super::batch::each_near_with;
 use super::bvh::Tree;
 use super::contains::Side;
 use super::nearest::{Probe, segment_foot, triangle_foot};
@@ -107,7 +107,10 @@ macro_rules! batch {
             options: ClosestOptions,
             control: Control<'_>,
         ) -> Result<Vec<Option<$out>>, QueryError> {
-            each_with(points, "closest", control, |&p| self.$one(p, options))?.into_iter().collect()
+            let key = |p: &DVec3| self.tree.point_key(*p);
+            each_near_with(&self.tree, points, "closest", control, key, |&p| self.$one(p, options))?
+                .into_iter()
+                .collect()
         }
     };
 }

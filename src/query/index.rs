@@ -40,7 +40,7 @@ impl Mesh {
     /// Builds the spatial index for rays and nearest elements. Build it once and ask it often: a single question costs
     /// O(log n) on surfaces from life.
     ///
-    /// O(n log n); about 52 bytes a triangle, and while it is being built about 60 more. The index borrows the mesh, so it
+    /// O(n log n); about 97 bytes a triangle, and while it is being built about 60 more. The index borrows the mesh, so it
     /// cannot outlive a change.
     ///
     /// # Examples

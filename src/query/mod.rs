@@ -12,6 +12,7 @@ mod facet;
 mod grow;
 mod index;
 mod intersections;
+mod lanes;
 mod mass;
 mod nearest;
 mod outward;
