@@ -5,6 +5,8 @@ use crate::{Cancelled, Control};
 
 /// Questions between two calls of the hook.
 const ROUND: usize = 1 << 14;
+/// Questions answered at once.
+const CHUNK: usize = 1 << 10;
 
 /// The answer to every question, or cancelled.
 pub(crate) fn each_with<T: Sync, R: Send>(

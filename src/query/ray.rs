@@ -133,7 +133,7 @@ impl MeshIndex<'_> {
     /// ```
     pub fn hits(&self, ray: &Ray) -> Vec<RayHit> {
         let cast = self.cast(ray);
-        self.all(&cast).into_iter().map(|e| self.hit(&cast, e)).collect()
+        self.all(&cast).into_iter().map(|e| self.hit(cast.parameter(e.t), e)).collect()
     }
 
     /// The first of [`hits`](Self::hits), touches included, without looking for the others.
@@ -151,7 +151,7 @@ impl MeshIndex<'_> {
         let cast = self.cast(ray);
         let mut first = First::default();
         cast.walk(true, |triangles| self.add_to_first(&cast, &mut first, triangles));
-        self.first(&cast, &first)
+        self.first(&cast, &first).map(|(t, event)| self.hit(t, event))
     }
 
     /// Whether a ray meets the surface at all, touches included.
@@ -217,15 +217,16 @@ impl MeshIndex<'_> {
         control: Control<'_>,
     ) -> Result<Vec<Option<RayHit>>, Cancelled> {
         each_chunk_with(rays, RAYS, control, |rays| {
-            let mut hits = vec![None; rays.len()];
+            let mut events = vec![None; rays.len()];
             cast_all(
                 &self.tree,
                 rays.len(),
                 |i| (self.cast(&rays[i]), First::default()),
                 |cast, first, triangles| self.add_to_first(cast, first, triangles),
-                |i, cast, first| hits[i] = self.first(cast, first),
+                |i, cast, first| events[i] = self.first(cast, first),
             );
-            hits
+            // All that is fetched for one at the same time as for the next.
+            events.into_iter().map(|e| e.map(|(t, event)| self.hit(t, event))).collect()
         })
     }
 
@@ -273,10 +274,11 @@ impl MeshIndex<'_> {
         first.best.map_or(f32::INFINITY, |b| cast.limit(b.t))
     }
 
-    fn first(&self, cast: &Cast<'_>, first: &First) -> Option<RayHit> {
+    /// The event and its parameter.
+    fn first(&self, cast: &Cast<'_>, first: &First) -> Option<(f64, Event)> {
         // What happens at an edge shows only when everything there is known.
         let event = if first.is_touching { self.all(cast).into_iter().next() } else { first.best };
-        event.map(|e| self.hit(cast, e))
+        event.map(|e| (cast.parameter(e.t), e))
     }
 
     fn cast(&self, ray: &Ray) -> Cast<'_> {
@@ -308,9 +310,9 @@ impl MeshIndex<'_> {
         a.t.total_cmp(&b.t).then_with(|| rest(a).cmp(&rest(b)))
     }
 
-    fn hit(&self, cast: &Cast<'_>, event: Event) -> RayHit {
+    fn hit(&self, t: f64, event: Event) -> RayHit {
         RayHit {
-            t: cast.parameter(event.t),
+            t,
             point: self.point(event.triangle, event.weights, event.part),
             face: self.mesh.faces.key(self.face_slot(event.triangle)),
             feature: self.feature(event.triangle, event.part),
