@@ -33,9 +33,8 @@ pub(crate) fn each_chunk_with<T: Sync, R: Send>(
     let mut answers = Vec::with_capacity(questions.len());
     for round in questions.chunks(ROUND) {
         control.report(stage, answers.len() as f64 / questions.len() as f64)?;
-        let chunks: Vec<&[T]> =
-            round.chunks(if cfg!(feature = "rayon") { ROUND / 16 } else { ROUND }).collect();
-        each_piece(&chunks, |chunk| answer(chunk)).iter_mut().for_each(|of| answers.append(of));
+        let chunks: Vec<&[T]> = round.chunks(CHUNK).collect();
+        each_piece(&chunks, |chunk| answer(chunk)).into_iter().for_each(|of| answers.extend(of));
     }
     Ok(answers)
 }
