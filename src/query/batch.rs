@@ -34,7 +34,7 @@ pub(crate) fn each_chunk_with<T: Sync, R: Send>(
     for round in questions.chunks(ROUND) {
         control.report(stage, answers.len() as f64 / questions.len() as f64)?;
         let chunks: Vec<&[T]> = round.chunks(CHUNK).collect();
-        each_piece(&chunks, |chunk| answer(chunk)).into_iter().for_each(|of| answers.extend(of));
+        each_piece(&chunks, |&chunk| answer(chunk)).into_iter().for_each(|of| answers.extend(of));
     }
     Ok(answers)
 }
