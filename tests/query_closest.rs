@@ -236,6 +236,22 @@ fn batches_are_the_single_answers_in_order() {
     assert_eq!(index.closest_face_center_batch(&points, ALL).expect("asked").len(), 300);
 }
 
+#[test]
+fn batches_about_a_large_mesh_are_the_single_answers_in_order() {
+    let mesh = shapes::mesh(&shapes::icosphere(6));
+    let index = mesh.index();
+    let mut noise = Noise(26);
+    // Far ones, and some where there are ties.
+    let mut points: Vec<DVec3> = (0..3000).map(|i| point(&mut noise, [3.0, 3e300][i % 2])).collect();
+    points.extend(mesh.vertices().take(500).map(|v| mesh.position(v)));
+    let single: Vec<_> = points.iter().map(|&p| index.closest_point(p, ALL).expect("asked well")).collect();
+    assert_eq!(index.closest_point_batch(&points, ALL).expect("asked well"), single);
+    points[2000].y = f64::NAN;
+    points[1000].x = f64::INFINITY;
+    let refused = QueryError::NonFinitePoint(points[1000]);
+    assert_eq!(index.closest_point_batch(&points, ALL), Err(refused), "the first of them");
+}
+
 fn near(a: DMat3, b: DMat3, slack: f64) -> bool {
     (a - b).to_cols_array().iter().all(|x| x.abs() <= slack)
 }

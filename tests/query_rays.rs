@@ -379,6 +379,36 @@ fn generic_rays_hit_what_the_naive_loop_hits() {
 }
 
 #[test]
+fn batches_are_the_single_answers_at_edges_and_vertices_too() {
+    let mesh = shapes::mesh(&shapes::icosphere(4));
+    let index = mesh.index();
+    let mut noise = Noise(6);
+    let places: Vec<DVec3> = mesh.vertices().map(|v| mesh.position(v)).collect();
+    let rays: Vec<Ray> = (0..3000)
+        .map(|i| {
+            let point = dvec3(noise.unit(), noise.unit(), noise.unit()) * 4.0 - 2.0;
+            let place = places[i * 7 % places.len()];
+            match i % 4 {
+                0 => ray(point, place - point),
+                1 => ray(place, place - point),
+                2 => ray(place * 2.0, -place),
+                _ => ray(point, -point),
+            }
+        })
+        .collect();
+    let single: Vec<_> = rays.iter().map(|r| index.first_hit(r)).collect();
+    assert!(single.iter().flatten().any(|hit| matches!(hit.feature, Feature::Vertex(_))));
+    assert!(single.iter().any(Option::is_none));
+    assert_eq!(index.first_hit_batch(&rays), single);
+    assert_eq!(index.is_hit_batch(&rays), rays.iter().map(|r| index.is_hit(r)).collect::<Vec<_>>());
+    let firsts: Vec<_> = rays.iter().map(|r| index.hits(r).into_iter().next()).collect();
+    assert_eq!(single, firsts);
+    let none = Mesh::default();
+    assert_eq!(none.index().first_hit_batch(&rays), vec![None; rays.len()]);
+    assert_eq!(none.index().is_hit_batch(&rays), vec![false; rays.len()]);
+}
+
+#[test]
 fn faces_without_area_do_no_harm() {
     // A cube's top is cut into triangles, of which some have no area: a vertex on an edge.
     let mut noise = Noise(5);

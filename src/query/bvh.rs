@@ -1,28 +1,24 @@
 //! A tree of boxes over triangles, eight to a node.
 //!
-//! The boxes are single precision about the middle of all, rounded outward: eight fit three cache lines and one pass of
-//! vector instructions. They only ever rule out; what is hit or nearest is decided on the triangles in f64. The tree is
-//! grown from the top by the surface area heuristic over bins (Wald, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies", 2007), always splitting the child of largest area until a node is full (Wald, Benthin and Boulos,
-//! "Getting Rid of Packets", 2008).
+//! The boxes are single precision about the middle of all, rounded outward: eight and what is in them fit one cache line,
+//! because a node's grid follows from its parent's (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs
+//! Through Compressed Wide BVHs", 2017, store it). They only ever rule out; what is hit or nearest is decided on the
+//! triangles in f64. [`grow`](super::grow) makes the tree.
 
 use super::exact::rounded;
+use super::grow::{Bounds, Primitive, grown};
 use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
-use crate::matching::NONE;
 use crate::{Cancelled, Control};
-use glam::DVec3;
-use smallvec::SmallVec;
+use glam::{DVec3, Vec4};
+use std::ops::Range;
 
 /// Children of a node.
 pub(crate) const WIDTH: usize = 8;
 /// The most triangles of a leaf; fewer where a node has room.
-const LEAF: usize = 4;
-/// Below this depth splits halve the count, so that no input makes the tree deep.
-const BALANCED_BELOW: u32 = 40;
-const BINS: usize = 16;
-/// A child's count that says it is a node.
-pub(crate) const INNER: u8 = u8::MAX;
+pub(crate) const LEAF: usize = 4;
+/// In the lowest three bits of a child's kind: it is a node.
+const INNER: u8 = 7;
 /// In a triangle's corner: the edge from it to the next corner is no edge of the face, but a cut through it.
 pub(crate) const CUT: u32 = 1 << 31;
 
@@ -30,15 +26,12 @@ pub(crate) const CUT: u32 = 1 << 31;
 /// coordinate to about one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
+    /// The root first; the children of a node lie together.
     pub(crate) nodes: Vec<Node>,
-    /// Corners as indices of `points`, with [`CUT`]; those of a leaf lie together.
-    triangles: Vec<[u32; 3]>,
-    /// The face each triangle belongs to, by the caller's number.
-    pub(crate) faces: Vec<u32>,
-    /// Scaled and on the grid of [`rounded`], in the order in which triangles name them.
-    pub(crate) points: Vec<DVec3>,
-    /// The caller's number of each point.
-    pub(crate) vertices: Vec<u32>,
+    /// The root's grid.
+    root: Frame,
+    /// Those of a leaf lie together.
+    triangles: Vec<Triangle>,
     pub(crate) scale: f64,
     /// What the boxes are relative to, scaled.
     pub(crate) center: DVec3,
@@ -46,45 +39,106 @@ pub(crate) struct Tree {
     pub(crate) radius: f64,
 }
 
-/// Up to eight boxes with what is in them. The boxes lie on a grid of the node's own, whose lines are exact in single
-/// precision (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017).
-#[derive(Clone, Debug)]
+/// All that is asked of a triangle, in one place, because each is one of millions and seldom in a cache.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    /// The corners, scaled and on the grid of [`rounded`].
+    places: [DVec3; 3],
+    /// The caller's numbers of the corners, with [`CUT`].
+    corners: [u32; 3],
+    /// The caller's number of the face it belongs to.
+    face: u32,
+}
+
+/// The grid on which the boxes in a node lie. All lines are exact in single precision.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Frame {
+    /// Line 0, a multiple of the step.
+    origin: [f32; 3],
+    /// From one line to the next: a power of two, not below `finest`.
+    step: [f32; 3],
+    finest: f32,
+}
+
+impl Frame {
+    /// A grid around a box and, within it, the finest there can be.
+    pub(crate) fn around(all: &Bounds) -> Self {
+        let (low, high) = (all.low(), all.high());
+        let power = |least: f64| f64::from_bits(((least.to_bits() >> 52) + 1) << 52);
+        let largest = [low, high].into_iter().flatten().fold(0.0, |m: f64, x| m.max(f64::from(x).abs()));
+        let finest = power((largest * FINEST).max(SMALLEST));
+        let mut frame = Self { finest: finest as f32, ..Self::default() };
+        for axis in 0..3 {
+            let [low, high] = [low[axis], high[axis]].map(f64::from);
+            // At most 254 steps.
+            let step = power((high - low) / 254.0).max(finest);
+            (frame.origin[axis], frame.step[axis]) = (((low / step).floor() * step) as f32, step as f32);
+        }
+        frame
+    }
+
+    /// The grid in a child: as fine as 255 lines let it be.
+    #[inline(always)]
+    pub(crate) fn of_child(&self, node: &Node, i: usize) -> Self {
+        let mut frame = *self;
+        for axis in 0..3 {
+            let (low, high) = (node.lines[axis][i], node.lines[axis + 3][i]);
+            // Halved as often as twice the width still fits: the exponent less that.
+            let halved = self.step[axis].to_bits().saturating_sub((high - low).leading_zeros() << 23);
+            frame.origin[axis] = self.origin[axis] + f32::from(low) * self.step[axis];
+            frame.step[axis] = f32::from_bits(halved.max(self.finest.to_bits()));
+        }
+        frame
+    }
+}
+
+/// The finest step relative to the largest coordinate, and at all, at least.
+const FINEST: f64 = 1.0 / (1 << 22) as f64;
+const SMALLEST: f64 = f64::from_bits((1023 - 120) << 52);
+
+/// Up to eight boxes with what is in them: a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(crate) struct Node {
-    /// Line 0 of the grid, a multiple of the step.
-    pub(crate) origin: [f32; 3],
-    /// From one line to the next: a power of two.
-    pub(crate) step: [f32; 3],
-    /// Lowest x, y, z, then highest x, y, z, of each child.
-    pub(crate) lines: [[u8; WIDTH]; 6],
-    /// How many triangles, or [`INNER`]; nothing where there is no child.
-    pub(crate) count: [u8; WIDTH],
-    /// A node, or the first triangle.
-    pub(crate) child: [u32; WIDTH],
+    /// Lowest x, y, z, then highest x, y, z, of each child, as lines of the node's grid.
+    lines: [[u8; WIDTH]; 6],
+    /// In the lowest three bits how many triangles are in a child, or [`INNER`], or 0: there is no child; above where
+    /// they begin after `first`, or which of `nodes` it is.
+    kinds: [u8; WIDTH],
+    /// The first child that is a node.
+    pub(super) nodes: u32,
+    /// The first triangle in the leaves.
+    first: u32,
 }
 
 impl Node {
-    /// A node of boxes, with no children yet.
-    fn around(boxes: &[(usize, usize, Bounds)]) -> Self {
-        let mut all = Bounds::EMPTY;
-        boxes.iter().for_each(|b| all.add(&b.2.low, &b.2.high));
+    /// A node without children.
+    pub(crate) const EMPTY: Self = {
         let lines = [[u8::MAX; WIDTH], [0; WIDTH]];
-        let mut node = Self {
-            origin: [0.0; 3],
-            step: [0.0; 3],
-            lines: [lines[0], lines[0], lines[0], lines[1], lines[1], lines[1]],
-            count: [0; WIDTH],
-            child: [0; WIDTH],
-        };
-        for axis in 0..3 {
-            let [low, high] = [all.low[axis], all.high[axis]].map(f64::from);
-            // At most 254 steps, and the origin at most 2^22 of them away.
-            let least = ((high - low) / 254.0).max(low.abs().max(high.abs()) * FINEST).max(SMALLEST);
-            let step = f64::from_bits(((least.to_bits() >> 52) + 1) << 52);
-            let origin = (low / step).floor() * step;
-            (node.origin[axis], node.step[axis]) = (origin as f32, step as f32);
-            for (i, (_, _, bounds)) in boxes.iter().enumerate() {
-                node.lines[axis][i] = ((f64::from(bounds.low[axis]) - origin) / step).floor() as u8;
-                node.lines[axis + 3][i] = ((f64::from(bounds.high[axis]) - origin) / step).ceil() as u8;
+        let lines = [lines[0], lines[0], lines[0], lines[1], lines[1], lines[1]];
+        Self { lines, kinds: [0; WIDTH], nodes: 0, first: 0 }
+    };
+
+    /// A node of boxes over ranges of triangles, those in leaves from `first` on, and with nodes from `nodes` on.
+    pub(super) fn new(parts: &[(Range<usize>, Bounds)], frame: &Frame, first: u32, nodes: usize) -> Self {
+        let mut node = Self { nodes: nodes as u32, first, ..Self::EMPTY };
+        let (mut inner, mut triangles) = (0u8, 0u8);
+        for (i, (range, bounds)) in parts.iter().enumerate() {
+            let (low, high) = (bounds.low(), bounds.high());
+            for axis in 0..3 {
+                // Rounded only where it is divided, by a power of two: not at all.
+                let line =
+                    |x: f32| (f64::from(x) - f64::from(frame.origin[axis])) / f64::from(frame.step[axis]);
+                // A cast rounds down.
+                node.lines[axis][i] = line(low[axis]) as u8;
+                node.lines[axis + 3][i] = 255 - (255.0 - line(high[axis])) as u8;
+            }
+            if range.len() > LEAF {
+                node.kinds[i] = inner << 3 | INNER;
+                inner += 1;
+            } else {
+                node.kinds[i] = triangles << 3 | range.len() as u8;
+                triangles += range.len() as u8;
             }
         }
         node
@@ -92,15 +146,31 @@ impl Node {
 
     /// Where a side of each child's box is: 0, 1, 2 are the low sides, 3, 4, 5 the high ones.
     #[inline(always)]
-    pub(crate) fn sides(&self, row: usize) -> [f32; WIDTH] {
-        let (origin, step) = (self.origin[row % 3], self.step[row % 3]);
+    pub(crate) fn sides(&self, frame: &Frame, row: usize) -> [f32; WIDTH] {
+        let (origin, step) = (frame.origin[row % 3], frame.step[row % 3]);
         self.lines[row].map(|line| origin + f32::from(line) * step)
     }
-}
 
-/// The grid's step relative to the largest coordinate, and at all, at least.
-const FINEST: f64 = 1.0 / (1 << 22) as f64;
-const SMALLEST: f64 = f64::from_bits((1023 - 120) << 52);
+    /// The children that exist, a bit for each.
+    pub(crate) fn children(&self) -> u32 {
+        (0..WIDTH).fold(0, |all, i| all | u32::from(self.kinds[i] != 0) << i)
+    }
+
+    /// The child, if it is a node.
+    #[inline(always)]
+    pub(crate) fn inner(&self, i: usize) -> Option<u32> {
+        let kind = self.kinds[i];
+        (kind & 7 == INNER).then(|| self.nodes + u32::from(kind >> 3))
+    }
+
+    /// The triangles of a child that is none.
+    #[inline(always)]
+    pub(crate) fn leaf(&self, i: usize) -> Range<u32> {
+        let kind = self.kinds[i];
+        let first = self.first + u32::from(kind >> 3);
+        first..first + u32::from(kind & 7)
+    }
+}
 
 impl Tree {
     /// The tree over triangles (corners into `positions`, perhaps with [`CUT`]) of the given faces. O(n log n).
@@ -123,31 +193,18 @@ impl Tree {
         let boxed = |(i, t): (usize, &[u32; 3])| {
             let [a, b, c] = t.map(|v| positions[(v & !CUT) as usize] * scale - center);
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            Primitive {
-                low: low.to_array().map(|x| rounded_down(x - SLOP)),
-                high: high.to_array().map(|x| rounded_up(x + SLOP)),
-                triangle: i as u32,
-            }
+            let low = low.to_array().map(|x| rounded_down(x - SLOP));
+            Primitive::new(low, high.to_array().map(|x| rounded_up(x + SLOP)), i as u32)
         };
         let mut primitives: Vec<Primitive> = triangles.iter().enumerate().map(boxed).collect();
-        let mut nodes = Vec::new();
+        let (mut nodes, mut order, mut root) = (vec![], vec![], Frame::default());
         if !primitives.is_empty() {
-            grow_with(
-                &mut primitives,
-                0,
-                0,
-                &mut nodes,
-                &mut Reports { control: &mut control, of: triangles.len() },
-            )?;
+            root = Frame::around(&Bounds::of(&primitives));
+            (nodes, order) = grown(&mut primitives, root, &mut control)?;
         }
-
-        let order = primitives.iter().map(|p| p.triangle as usize);
-        Ok(Self {
-            nodes,
-            center,
-            radius,
-            ..Self::flat(positions, order.map(|i| (triangles[i], faces[i])), scale)
-        })
+        drop(primitives);
+        let order = order.into_iter().map(|i| (triangles[i as usize], faces[i as usize]));
+        Ok(Self { nodes, root, center, radius, ..Self::flat(positions, order, scale) })
     }
 
     /// Triangles and faces in the order given, without boxes: no walk finds them.
@@ -156,49 +213,38 @@ impl Tree {
         triangles: impl ExactSizeIterator<Item = ([u32; 3], u32)>,
         scale: f64,
     ) -> Self {
-        let mut number = vec![NONE; positions.len()];
-        let mut tree = Self {
-            nodes: vec![],
-            triangles: Vec::with_capacity(triangles.len()),
-            faces: Vec::with_capacity(triangles.len()),
-            points: vec![],
-            vertices: vec![],
-            scale,
-            center: DVec3::ZERO,
-            radius: 0.0,
-        };
-        for (corners, face) in triangles {
-            let corners = corners.map(|v| {
-                let of = &mut number[(v & !CUT) as usize];
-                if *of == NONE {
-                    *of = tree.points.len() as u32;
-                    tree.points.push(rounded(positions[(v & !CUT) as usize] * scale));
-                    tree.vertices.push(v & !CUT);
-                }
-                *of | v & CUT
-            });
-            tree.triangles.push(corners);
-            tree.faces.push(face);
-        }
-        tree.points.shrink_to_fit();
-        tree.vertices.shrink_to_fit();
-        tree
+        let place = |v: u32| rounded(positions[(v & !CUT) as usize] * scale);
+        let whole = |(corners, face): ([u32; 3], u32)| Triangle { places: corners.map(place), corners, face };
+        Self { triangles: triangles.map(whole).collect(), scale, ..Self::default() }
     }
 
-    /// The corners of a triangle, as indices of points.
+    /// The caller's numbers of the corners of a triangle.
+    #[inline]
     pub(crate) fn corners(&self, triangle: u32) -> [u32; 3] {
-        self.triangles[triangle as usize].map(|v| v & !CUT)
+        self.triangles[triangle as usize].corners.map(|v| v & !CUT)
     }
 
     /// Whether the edge from a corner to the next is an edge of the face.
+    #[inline]
     pub(crate) fn is_edge(&self, triangle: u32, corner: usize) -> bool {
-        self.triangles[triangle as usize][corner] & CUT == 0
+        self.triangles[triangle as usize].corners[corner] & CUT == 0
     }
 
     /// The corners' positions, scaled.
     #[inline]
     pub(crate) fn places(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.points[(v & !CUT) as usize])
+        self.triangles[triangle as usize].places
+    }
+
+    /// The caller's number of the face a triangle belongs to.
+    #[inline]
+    pub(crate) fn face(&self, triangle: u32) -> u32 {
+        self.triangles[triangle as usize].face
+    }
+
+    /// The faces of all triangles.
+    pub(crate) fn faces(&self) -> impl Iterator<Item = u32> + '_ {
+        self.triangles.iter().map(|t| t.face)
     }
 
     /// A box in the terms of the nodes': whatever meets it meets their boxes.
@@ -207,16 +253,41 @@ impl Tree {
         (low.map(|x| rounded_down(x - SLOP)), high.map(|x| rounded_up(x + SLOP)))
     }
 
+    /// The root, if there is one, with its grid.
+    #[inline]
+    pub(crate) fn root(&self) -> Option<(u32, Frame)> {
+        (!self.nodes.is_empty()).then_some((0, self.root))
+    }
+
+    /// A number that is close for points close to each other (Morton, "A Computer Oriented Geodetic Data Base", 1966).
+    pub(crate) fn point_key(&self, point: DVec3) -> u64 {
+        let at = (point * self.scale - self.center) * (512.0 / (2.0 * self.radius));
+        // A cast keeps what is far away, and what is no number, at the ends.
+        let of = at.to_array().map(|x| ((x + 512.0) as u64).min(1023));
+        (0..10).rev().fold(0, |key, bit| of.iter().fold(key, |key, x| key << 1 | x >> bit & 1))
+    }
+
+    /// Has a node fetched while others are looked at.
+    #[inline(always)]
+    pub(crate) fn touch(&self, node: u32) {
+        std::hint::black_box(self.nodes[node as usize].kinds[0]);
+    }
+
+    /// The same for a triangle.
+    #[inline(always)]
+    pub(crate) fn touch_triangle(&self, triangle: u32) {
+        if let Some(t) = self.triangles.get(triangle as usize) {
+            std::hint::black_box(t.places[1].x);
+        }
+    }
+
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
     /// Heap bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>()
-            + self.triangles.capacity() * 12
-            + (self.faces.capacity() + self.vertices.capacity()) * 4
-            + self.points.capacity() * size_of::<DVec3>()
+        self.nodes.capacity() * size_of::<Node>() + self.triangles.capacity() * size_of::<Triangle>()
     }
 }
 
@@ -234,207 +305,12 @@ pub(crate) fn rounded_up(x: f64) -> f32 {
     -rounded_down(-x)
 }
 
-#[derive(Clone, Copy)]
-struct Primitive {
-    low: [f32; 3],
-    high: [f32; 3],
-    triangle: u32,
-}
-
-#[derive(Clone, Copy)]
-struct Bounds {
-    low: [f32; 3],
-    high: [f32; 3],
-}
-
-impl Bounds {
-    const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
-
-    #[inline]
-    fn add(&mut self, low: &[f32; 3], high: &[f32; 3]) {
-        for i in 0..3 {
-            self.low[i] = if low[i] < self.low[i] { low[i] } else { self.low[i] };
-            self.high[i] = if high[i] > self.high[i] { high[i] } else { self.high[i] };
-        }
-    }
-
-    fn of(primitives: &[Primitive]) -> Self {
-        let mut all = Self::EMPTY;
-        primitives.iter().for_each(|p| all.add(&p.low, &p.high));
-        all
-    }
-
-    fn half_area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|i| (self.high[i] - self.low[i]).max(0.0));
-        x * y + y * z + z * x
-    }
-}
-
-#[cfg(feature = "rayon")]
-/// The nodes over primitives, the root first; `first` is the number of the first of them in the whole order.
-fn grow(primitives: &mut [Primitive], first: u32, depth: u32) -> Vec<Node> {
-    let mut nodes = Vec::new();
-    grow_into(primitives, first, depth, &mut nodes);
-    nodes
-}
-
-/// The hook of a tree that grows, and over how many primitives.
-struct Reports<'c, 'a> {
-    control: &'c mut Control<'a>,
-    of: usize,
-}
-
-/// Between two reports, about.
-const ROUND: usize = 1 << 18;
-
-/// [`grow_into`], from the calling thread down to where a report is due.
-fn grow_with(
-    primitives: &mut [Primitive],
-    first: u32,
-    depth: u32,
-    nodes: &mut Vec<Node>,
-    reports: &mut Reports<'_, '_>,
-) -> Result<(), Cancelled> {
-    reports.control.report("index", f64::from(first) / reports.of as f64)?;
-    if primitives.len() <= ROUND {
-        grow_into(primitives, first, depth, nodes);
-        return Ok(());
-    }
-    let parts = parts(primitives, depth);
-    let here = nodes.len();
-    nodes.push(node(&parts, first));
-    for (i, &(start, end, _)) in parts.iter().enumerate().filter(|(_, p)| p.1 - p.0 > LEAF) {
-        nodes[here].child[i] = nodes.len() as u32;
-        grow_with(&mut primitives[start..end], first + start as u32, depth + 1, nodes, reports)?;
-    }
-    Ok(())
-}
-
-type Parts = SmallVec<[(usize, usize, Bounds); WIDTH]>;
-
-/// Orders primitives into the children of a node: ranges with their bounds.
-fn parts(primitives: &mut [Primitive], depth: u32) -> Parts {
-    let mut parts = Parts::new();
-    parts.push((0, primitives.len(), Bounds::of(primitives)));
-    // The widest of those too large for a leaf, then of all: a node is full unless triangles run out.
-    for most in [LEAF, 1] {
-        while parts.len() < WIDTH {
-            let large = parts.iter().enumerate().filter(|(_, p)| p.1 - p.0 > most);
-            let area = |p: &(usize, &(usize, usize, Bounds))| p.1.2.half_area();
-            let Some((i, &(start, end, _))) = large.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
-            let middle = start + split(&mut primitives[start..end], depth > BALANCED_BELOW);
-            parts[i] = (start, middle, Bounds::of(&primitives[start..middle]));
-            parts.insert(i + 1, (middle, end, Bounds::of(&primitives[middle..end])));
-        }
-    }
-    parts
-}
-
-/// The node over these parts; children that are nodes are yet to be linked.
-fn node(parts: &Parts, first: u32) -> Node {
-    let mut node = Node::around(parts);
-    for (i, (start, end, _)) in parts.iter().enumerate() {
-        let count = end - start;
-        (node.child[i], node.count[i]) =
-            if count > LEAF { (0, INNER) } else { (first + *start as u32, count as u8) };
-    }
-    node
-}
-
-fn grow_into(primitives: &mut [Primitive], first: u32, depth: u32, nodes: &mut Vec<Node>) {
-    let parts = parts(primitives, depth);
-    let here = nodes.len();
-    nodes.push(node(&parts, first));
-    let is_inner = |p: &(usize, usize, Bounds)| p.1 - p.0 > LEAF;
-    #[cfg(feature = "rayon")]
-    if primitives.len() > 1 << 15 {
-        use rayon::prelude::*;
-        let mut rest = primitives;
-        let mut ranges = Vec::new();
-        for part in &parts {
-            let (own, after) = rest.split_at_mut(part.1 - part.0);
-            rest = after;
-            ranges.push((own, first + part.0 as u32));
-        }
-        let below: Vec<Vec<Node>> = ranges
-            .into_par_iter()
-            .map(|(own, first)| if own.len() > LEAF { grow(own, first, depth + 1) } else { vec![] })
-            .collect();
-        for (i, mut below) in below.into_iter().enumerate().filter(|b| !b.1.is_empty()) {
-            let offset = nodes.len() as u32;
-            nodes[here].child[i] = offset;
-            for node in &mut below {
-                for (child, _) in node.child.iter_mut().zip(node.count).filter(|c| c.1 == INNER) {
-                    *child += offset;
-                }
-            }
-            nodes.append(&mut below);
-        }
-        return;
-    }
-    for (i, &(start, end, _)) in parts.iter().enumerate().filter(|(_, p)| is_inner(p)) {
-        nodes[here].child[i] = nodes.len() as u32;
-        grow_into(&mut primitives[start..end], first + start as u32, depth + 1, nodes);
-    }
-}
-
-/// Parts primitives (two at least) in two, and says how many are in the first part.
-fn split(primitives: &mut [Primitive], balanced: bool) -> usize {
-    let half = primitives.len() / 2;
-    let mut middles = Bounds::EMPTY;
-    for p in primitives.iter() {
-        let twice = [0, 1, 2].map(|i| p.low[i] + p.high[i]);
-        middles.add(&twice, &twice);
-    }
-    let extent = [0, 1, 2].map(|i| middles.high[i] - middles.low[i]);
-    if balanced {
-        let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
-        let key = |p: &Primitive| p.low[axis] + p.high[axis];
-        primitives
-            .select_nth_unstable_by(half, |a, b| key(a).total_cmp(&key(b)).then(a.triangle.cmp(&b.triangle)));
-        return half;
-    }
-    let per_unit = extent.map(|e| if e > 0.0 { BINS as f32 / e } else { 0.0 });
-    let bin = |p: &Primitive, axis: usize| {
-        let at = (p.low[axis] + p.high[axis] - middles.low[axis]) * per_unit[axis];
-        (at as usize).min(BINS - 1)
+/// In which lanes the first is not above the second, a bit for each.
+#[inline(always)]
+pub(crate) fn not_above(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> u32 {
+    let half = |i: usize| {
+        let four = |of: &[f32; WIDTH]| Vec4::new(of[i], of[i + 1], of[i + 2], of[i + 3]);
+        four(a).cmple(four(b)).bitmask()
     };
-    let mut bins = [[(0u32, Bounds::EMPTY); BINS]; 3];
-    for p in primitives.iter() {
-        for (axis, bins) in bins.iter_mut().enumerate() {
-            let (count, bounds) = &mut bins[bin(p, axis)];
-            *count += 1;
-            bounds.add(&p.low, &p.high);
-        }
-    }
-    // Cost, axis, first bin of the right part.
-    let mut best: Option<(f32, usize, usize)> = None;
-    for (axis, bins) in bins.iter().enumerate().filter(|&(axis, _)| extent[axis] > 0.0) {
-        let mut right = [0.0f32; BINS];
-        let (mut count, mut bounds) = (0, Bounds::EMPTY);
-        for i in (1..BINS).rev() {
-            count += bins[i].0;
-            bounds.add(&bins[i].1.low, &bins[i].1.high);
-            right[i] = if count == 0 { f32::NAN } else { bounds.half_area() * count as f32 };
-        }
-        let (mut count, mut bounds) = (0, Bounds::EMPTY);
-        for i in 1..BINS {
-            count += bins[i - 1].0;
-            bounds.add(&bins[i - 1].1.low, &bins[i - 1].1.high);
-            let cost = bounds.half_area() * count as f32 + right[i];
-            // Not a number where nothing is to the right.
-            if count > 0 && cost < best.map_or(f32::INFINITY, |b| b.0) {
-                best = Some((cost, axis, i));
-            }
-        }
-    }
-    let Some((_, axis, at)) = best else { return half };
-    let mut left = 0;
-    for i in 0..primitives.len() {
-        if bin(&primitives[i], axis) < at {
-            primitives.swap(i, left);
-            left += 1;
-        }
-    }
-    if left == 0 || left == primitives.len() { half } else { left }
+    half(0) | half(4) << 4
 }

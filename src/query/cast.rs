@@ -5,7 +5,7 @@
 //! the same (Edelsbrunner and Mücke, "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990); then it passes
 //! each triangle or does not, and the passings of a closed surface add up to its winding number.
 
-use super::bvh::{INNER, Node, Tree, WIDTH, rounded_down, rounded_up};
+use super::bvh::{Frame, Node, Tree, WIDTH, not_above, rounded_down, rounded_up};
 use super::exact::{Line, rounded};
 use crate::geometry::unit_scale;
 use glam::DVec3;
@@ -148,42 +148,50 @@ impl<'t> Cast<'t> {
     #[inline]
     pub(crate) fn walk(&self, ordered: bool, mut leaf: impl FnMut(std::ops::Range<u32>) -> f32) {
         let mut limit = f32::INFINITY;
-        let mut stack: SmallVec<[(f32, u32, u8); 96]> = SmallVec::new();
-        if !self.tree.nodes.is_empty() {
-            stack.push((0.0, 0, INNER));
-        }
-        while let Some((enter, at, count)) = stack.pop() {
+        let mut stack: SmallVec<[(f32, u32, Frame); 64]> = SmallVec::new();
+        stack.extend(self.tree.root().map(|(root, frame)| (0.0, root, frame)));
+        while let Some((enter, at, frame)) = stack.pop() {
             if enter > limit {
                 continue;
             }
-            if count != INNER {
-                limit = leaf(at..at + u32::from(count));
-                continue;
-            }
             let node = &self.tree.nodes[at as usize];
-            let (enter, mut met) = self.meets(node, limit);
+            let (enter, mut met) = self.meets(node, &frame, limit);
             let bottom = stack.len();
+            let mut leaves = 0u32;
             while met != 0 {
-                let i = met.trailing_zeros() as usize;
+                let i = met.trailing_zeros() as usize % WIDTH;
                 met &= met - 1;
+                let Some(child) = node.inner(i) else {
+                    self.tree.touch_triangle(node.leaf(i).start);
+                    leaves |= 1 << i;
+                    continue;
+                };
+                self.tree.touch(child);
                 let mut j = stack.len();
-                stack.push((enter[i], node.child[i], node.count[i]));
+                stack.push((enter[i], child, frame.of_child(node, i)));
                 // The nearest on top.
                 while ordered && j > bottom && stack[j - 1].0 < stack[j].0 {
                     stack.swap(j - 1, j);
                     j -= 1;
                 }
             }
+            while leaves != 0 {
+                let i = leaves.trailing_zeros() as usize % WIDTH;
+                leaves &= leaves - 1;
+                if enter[i] <= limit {
+                    limit = leaf(node.leaf(i));
+                }
+            }
         }
     }
 
     /// Where the ray enters each child, and which children it meets before the limit.
-    #[inline]
-    fn meets(&self, node: &Node, limit: f32) -> ([f32; WIDTH], u32) {
+    #[inline(always)]
+    pub(super) fn meets(&self, node: &Node, frame: &Frame, limit: f32) -> ([f32; WIDTH], u32) {
         let mut enter = [0.0f32; WIDTH];
         let mut exit = [limit; WIDTH];
         for axis in 0..3 {
-            let (near, far) = (node.sides(self.rows[axis].0), node.sides(self.rows[axis].1));
+            let (near, far) = (node.sides(frame, self.rows[axis].0), node.sides(frame, self.rows[axis].1));
             for i in 0..WIDTH {
                 let a = (near[i] - self.near[axis]) * self.inverse[axis];
                 let b = (far[i] - self.far[axis]) * self.inverse[axis];
@@ -191,11 +199,7 @@ impl<'t> Cast<'t> {
                 exit[i] = if b < exit[i] { b } else { exit[i] };
             }
         }
-        let mut met = 0;
-        for i in 0..WIDTH {
-            met |= u32::from(enter[i] <= exit[i] * WIDER) << i;
-        }
-        (enter, met)
+        (enter, not_above(&enter, &exit.map(|x| x * WIDER)))
     }
 
     /// How the ray meets a triangle; what lies behind the origin or beyond the scaled parameter `limit` may count as
@@ -333,8 +337,7 @@ impl<'t> Cast<'t> {
                         _ => t.min(-f64::MIN_POSITIVE),
                     }
                 };
-                let cut =
-                    if self.is_edge(triangle, part) { 0 } else { self.tree.faces[triangle as usize] + 1 };
+                let cut = if self.is_edge(triangle, part) { 0 } else { self.tree.face(triangle) + 1 };
                 let along = if is_swapped { 1.0 - along } else { along };
                 Touched { key: (corners[i], corners[j], cut), part, t, along }
             }

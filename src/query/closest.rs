@@ -1,6 +1,6 @@
 //! Nearest elements: vertices, edges, faces, face centres, points of the surface.
 
-use super::batch::each_with;
+use super::batch::each_near_with;
 use super::bvh::Tree;
 use super::contains::Side;
 use super::nearest::{Probe, segment_foot, triangle_foot};
@@ -107,7 +107,10 @@ macro_rules! batch {
             options: ClosestOptions,
             control: Control<'_>,
         ) -> Result<Vec<Option<$out>>, QueryError> {
-            each_with(points, "closest", control, |&p| self.$one(p, options))?.into_iter().collect()
+            let key = |p: &DVec3| self.tree.point_key(*p);
+            each_near_with(&self.tree, points, "closest", control, key, |&p| self.$one(p, options))?
+                .into_iter()
+                .collect()
         }
     };
 }
@@ -182,16 +185,18 @@ impl MeshIndex<'_> {
         let start = bound(options, tree.scale);
         let mut best: Option<(f64, u32, DVec3)> = None;
         probe.walk(start, |triangle| {
-            let corners = tree.corners(triangle);
+            let (corners, places) = (tree.corners(triangle), tree.places(triangle));
             for i in (0..3).filter(|&i| tree.is_edge(triangle, i)) {
-                let (v, w) = (corners[i], corners[(i + 1) % 3]);
-                let [p, q] = [v.min(w), v.max(w)].map(|v| tree.points[v as usize] - probe.point);
+                let j = (i + 1) % 3;
+                // The same computation from both faces.
+                let ends = if corners[i] < corners[j] { [i, j] } else { [j, i] };
+                let [p, q] = ends.map(|k| places[k] - probe.point);
                 let (square, along) = segment_foot(p, q);
                 if best.is_none_or(|b| square <= b.0)
                     && let Some(h) = self.halfedge_slot(triangle, i)
                     && best.is_none_or(|b| (square, h >> 1) < (b.0, b.1))
                 {
-                    let [p, q] = [v.min(w), v.max(w)].map(|v| tree.points[v as usize]);
+                    let [p, q] = ends.map(|k| places[k]);
                     let foot = if along == 1.0 { q } else { p + (q - p) * along };
                     best = Some((square, h >> 1, foot / tree.scale));
                 }
@@ -256,7 +261,7 @@ impl MeshIndex<'_> {
         let mut best: Option<(f64, u32, DVec3)> = None;
         probe.walk(start, |triangle| {
             let [center, ..] = tree.places(triangle);
-            let (square, face) = ((center - probe.point).length_squared(), tree.faces[triangle as usize]);
+            let (square, face) = ((center - probe.point).length_squared(), tree.face(triangle));
             if best.is_none_or(|b| (square, face) < (b.0, b.1)) {
                 best = Some((square, face, center / tree.scale));
             }
@@ -316,9 +321,8 @@ impl MeshIndex<'_> {
         let start = bound(options, tree.scale);
         let mut best: Option<(f64, u32)> = None;
         probe.walk(start, |triangle| {
-            for v in tree.corners(triangle) {
-                let square = (tree.points[v as usize] - probe.point).length_squared();
-                let found = (square, tree.vertices[v as usize]);
+            for (v, place) in tree.corners(triangle).into_iter().zip(tree.places(triangle)) {
+                let found = ((place - probe.point).length_squared(), v);
                 if best.is_none_or(|b| found < b) {
                     best = Some(found);
                 }

@@ -49,10 +49,9 @@ pub(crate) fn events(cast: &Cast<'_>, contacts: &[Contact], into: &mut Vec<Event
         let sum = if begin < 0.0 || has_rim(cast, contacts, event) { 0 } else { sum };
         // Where the event begins, or the origin within it; of the faces there one that looks the way of the crossing, then
         // the first.
-        let faces = &cast.tree().faces;
         let looks = |i: u32| {
             let contact = &contacts[i as usize];
-            (i32::from(contact.facing) != sum.signum(), faces[contact.triangle as usize], contact.triangle)
+            (i32::from(contact.facing) != sum.signum(), cast.tree().face(contact.triangle), contact.triangle)
         };
         let ahead =
             event.iter().filter(|m| m.3.t >= 0.0).map(|m| (m.3.t, m.1, looks(m.2), weights(m.3), m.3.part));

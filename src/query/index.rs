@@ -40,7 +40,7 @@ impl Mesh {
     /// Builds the spatial index for rays and nearest elements. Build it once and ask it often: a single question costs
     /// O(log n) on surfaces from life.
     ///
-    /// O(n log n); about 52 bytes a triangle, and while it is being built about 60 more. The index borrows the mesh, so it
+    /// O(n log n); about 97 bytes a triangle, and while it is being built about 60 more. The index borrows the mesh, so it
     /// cannot outlive a change.
     ///
     /// # Examples
@@ -180,11 +180,11 @@ impl<'m> MeshIndex<'m> {
     }
 
     pub(super) fn corner_slots(&self, triangle: u32) -> [u32; 3] {
-        self.tree.corners(triangle).map(|v| self.tree.vertices[v as usize])
+        self.tree.corners(triangle)
     }
 
     pub(super) fn face_slot(&self, triangle: u32) -> u32 {
-        self.tree.faces[triangle as usize]
+        self.tree.face(triangle)
     }
 
     /// The half-edge of the triangle's face from a corner to the next; `None` if that is a cut.

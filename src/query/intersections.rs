@@ -2,7 +2,7 @@
 
 use super::MeshIndex;
 use super::batch::each_piece;
-use super::bvh::{INNER, Node, WIDTH};
+use super::bvh::{Frame, Node, WIDTH};
 use super::facet::{Contact, Facet, meet};
 use crate::{Cancelled, Control, FaceKey, Mesh};
 use glam::DVec3;
@@ -153,7 +153,7 @@ impl MeshIndex<'_> {
         }
         all.cut();
         let key = |f: u32| self.mesh.faces.key(f);
-        let first_unsearched = all.first_unsearched.map(|t| key(self.tree.faces[t as usize]));
+        let first_unsearched = all.first_unsearched.map(|t| key(self.tree.face(t)));
         let pair = |p: Pair| FacePair {
             faces: p.faces.map(key),
             contact: p.contact,
@@ -257,13 +257,13 @@ impl<'i> Search<'i> {
             return search;
         }
         search.starts = vec![0; mesh.faces.slot_count() + 1];
-        tree.faces.iter().for_each(|&f| search.starts[f as usize + 1] += 1);
+        tree.faces().for_each(|f| search.starts[f as usize + 1] += 1);
         for f in 1..search.starts.len() {
             search.starts[f] += search.starts[f - 1];
         }
         let mut next = search.starts.clone();
         search.by_face = vec![0; count];
-        for (triangle, &f) in (0..).zip(&tree.faces) {
+        for (triangle, f) in (0..).zip(tree.faces()) {
             let at = &mut next[f as usize];
             search.by_face[*at as usize] = triangle;
             *at += 1;
@@ -278,7 +278,7 @@ impl<'i> Search<'i> {
     }
 
     fn first_of(&self, triangle: u32) -> u32 {
-        let face = self.index.tree.faces[triangle as usize] as usize;
+        let face = self.index.tree.face(triangle) as usize;
         if self.starts.is_empty() { triangle } else { self.by_face[self.starts[face] as usize] }
     }
 
@@ -304,7 +304,7 @@ impl<'i> Search<'i> {
                 continue;
             }
             let mut enough = 1024;
-            for &piece in &self.by_face[self.range(tree.faces[first as usize])] {
+            for &piece in &self.by_face[self.range(tree.face(first))] {
                 if found.may_search(piece) {
                     found.work += self.triangle(first, piece, &mut |pair| of_face.push(pair));
                 }
@@ -323,25 +323,24 @@ impl<'i> Search<'i> {
     fn triangle(&self, first: u32, piece: u32, push: &mut impl FnMut(Pair)) -> u64 {
         let mut work = 0;
         let tree = &self.index.tree;
-        let face = tree.faces[piece as usize];
+        let face = tree.face(piece);
         let [a, b, c] = tree.places(piece);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let around = tree.boxed(low, high);
         let mut own: Option<Facet> = None;
-        let mut stack: SmallVec<[u32; 64]> = SmallVec::from_slice(&[0]);
-        while let Some(at) = stack.pop() {
+        let mut stack: SmallVec<[(u32, Frame); 64]> = tree.root().into_iter().collect();
+        while let Some((at, frame)) = stack.pop() {
             let node = &tree.nodes[at as usize];
-            let mut met = meets(node, &around);
+            let mut met = meets(node, &frame, &around);
             while met != 0 {
-                let i = met.trailing_zeros() as usize;
+                let i = met.trailing_zeros() as usize % WIDTH;
                 met &= met - 1;
-                let (child, count) = (node.child[i], node.count[i]);
-                if count == INNER {
-                    stack.push(child);
+                if let Some(child) = node.inner(i) {
+                    stack.push((child, frame.of_child(node, i)));
                     continue;
                 }
-                work += u64::from(count);
-                for other in child..child + u32::from(count) {
+                work += node.leaf(i).len() as u64;
+                for other in node.leaf(i) {
                     if self.first_of(other) <= first {
                         continue;
                     }
@@ -352,7 +351,7 @@ impl<'i> Search<'i> {
                     }
                     work += TEST;
                     let own = own.get_or_insert_with(|| self.facet(piece));
-                    let (facet, of_other) = (self.facet(other), tree.faces[other as usize]);
+                    let (facet, of_other) = (self.facet(other), tree.face(other));
                     let met = if face < of_other { meet(own, &facet) } else { meet(&facet, own) };
                     if let Some((contact, place)) = met {
                         push(Pair { faces: [face.min(of_other), face.max(of_other)], contact, place });
@@ -374,7 +373,7 @@ fn cuts(index: &MeshIndex<'_>) -> Vec<u8> {
     let mut flat: Vec<(u32, u32, u32)> = Vec::new();
     for (triangle, cuts) in (0..).zip(&mut cuts) {
         if *cuts != 0 && !Facet::new(tree.places(triangle), [false; 3]).has_area() {
-            let (face, of) = (tree.faces[triangle as usize], tree.corners(triangle));
+            let (face, of) = (tree.face(triangle), tree.corners(triangle));
             flat.extend((0..3).map(|i| (face, of[(i + 1) % 3], of[i])));
             *cuts = 0;
         }
@@ -382,7 +381,7 @@ fn cuts(index: &MeshIndex<'_>) -> Vec<u8> {
     flat.sort_unstable();
     if !flat.is_empty() {
         for (triangle, cuts) in (0..).zip(&mut cuts) {
-            let (face, of) = (tree.faces[triangle as usize], tree.corners(triangle));
+            let (face, of) = (tree.face(triangle), tree.corners(triangle));
             let is_flat = |i: usize| flat.binary_search(&(face, of[i], of[(i + 1) % 3])).is_ok();
             (0..3).filter(|&i| is_flat(i)).for_each(|i| *cuts &= !(1 << i));
         }
@@ -392,16 +391,15 @@ fn cuts(index: &MeshIndex<'_>) -> Vec<u8> {
 
 /// Which children's boxes meet a box.
 #[inline]
-fn meets(node: &Node, (low, high): &([f32; 3], [f32; 3])) -> u32 {
+fn meets(node: &Node, frame: &Frame, (low, high): &([f32; 3], [f32; 3])) -> u32 {
     let mut apart = [false; WIDTH];
     for axis in 0..3 {
-        let (lows, highs) = (node.sides(axis), node.sides(axis + 3));
+        let (lows, highs) = (node.sides(frame, axis), node.sides(frame, axis + 3));
         for i in 0..WIDTH {
             apart[i] |= (lows[i] > high[axis]) | (highs[i] < low[axis]);
         }
     }
-    let is_met = |i: usize| !apart[i] & (node.count[i] > 0);
-    (0..WIDTH).fold(0, |met, i| met | u32::from(is_met(i)) << i)
+    (0..WIDTH).fold(0, |met, i| met | u32::from(!apart[i]) << i) & node.children()
 }
 
 /// Leaves of each pair of faces what is strongest, and of that what was found first.

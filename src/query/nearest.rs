@@ -1,6 +1,6 @@
 //! What in a tree of triangles is nearest to a point.
 
-use super::bvh::{INNER, Node, Tree, WIDTH, rounded_down, rounded_up};
+use super::bvh::{Frame, Node, Tree, WIDTH, not_above, rounded_down, rounded_up};
 use super::cast::Part;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -42,32 +42,32 @@ impl<'t> Probe<'t> {
     #[inline]
     pub(crate) fn walk(&self, bound: f64, mut leaf: impl FnMut(u32) -> f64) {
         let mut limit = bound;
-        let mut stack: SmallVec<[(f32, u32, u8); 96]> = SmallVec::new();
-        if !self.tree.nodes.is_empty() {
-            stack.push((0.0, 0, INNER));
-        }
-        while let Some((distance, at, count)) = stack.pop() {
-            let reach = rounded_up(limit * WIDER);
+        let mut stack: SmallVec<[(f32, u32, Frame); 64]> = SmallVec::new();
+        stack.extend(self.tree.root().map(|(root, frame)| (0.0, root, frame)));
+        while let Some((distance, at, frame)) = stack.pop() {
+            let mut reach = rounded_up(limit * WIDER);
             if distance > reach {
                 continue;
             }
-            if count != INNER {
-                (at..at + u32::from(count)).for_each(|triangle| limit = leaf(triangle));
-                continue;
-            }
             let node = &self.tree.nodes[at as usize];
-            let distances = if self.is_far { self.far_distances(node) } else { self.distances(node) };
-            let mut near = 0u32;
-            for (i, &distance) in distances.iter().enumerate() {
-                near |= u32::from(distance <= reach) << i;
-            }
+            let distances =
+                if self.is_far { self.far_distances(node, &frame) } else { self.distances(node, &frame) };
+            let mut near = not_above(&distances, &[reach; WIDTH]);
             let bottom = stack.len();
             while near != 0 {
-                let i = near.trailing_zeros() as usize;
+                let i = near.trailing_zeros() as usize % WIDTH;
                 near &= near - 1;
+                let Some(child) = node.inner(i) else {
+                    if distances[i] <= reach {
+                        node.leaf(i).for_each(|triangle| limit = leaf(triangle));
+                        reach = rounded_up(limit * WIDER);
+                    }
+                    continue;
+                };
+                self.tree.touch(child);
                 // The nearest on top.
                 let mut j = stack.len();
-                stack.push((distances[i], node.child[i], node.count[i]));
+                stack.push((distances[i], child, frame.of_child(node, i)));
                 while j > bottom && stack[j - 1].0 < stack[j].0 {
                     stack.swap(j - 1, j);
                     j -= 1;
@@ -78,10 +78,10 @@ impl<'t> Probe<'t> {
 
     /// Squared distances to the boxes, at most a few half-ulps too large.
     #[inline]
-    fn distances(&self, node: &Node) -> [f32; WIDTH] {
+    fn distances(&self, node: &Node, frame: &Frame) -> [f32; WIDTH] {
         let mut squares = [0.0f32; WIDTH];
         for axis in 0..3 {
-            let (low, high) = (node.sides(axis), node.sides(axis + 3));
+            let (low, high) = (node.sides(frame, axis), node.sides(frame, axis + 3));
             for i in 0..WIDTH {
                 let below = low[i] - self.high[axis];
                 let above = self.low[axis] - high[i];
@@ -95,8 +95,8 @@ impl<'t> Probe<'t> {
 
     /// The same in double precision, for points so far away that single precision tells nothing.
     #[cold]
-    fn far_distances(&self, node: &Node) -> [f32; WIDTH] {
-        let sides: [[f32; WIDTH]; 6] = std::array::from_fn(|row| node.sides(row));
+    fn far_distances(&self, node: &Node, frame: &Frame) -> [f32; WIDTH] {
+        let sides: [[f32; WIDTH]; 6] = std::array::from_fn(|row| node.sides(frame, row));
         std::array::from_fn(|i| {
             let low = DVec3::from_array([0, 1, 2].map(|k| f64::from(sides[k][i])));
             let high = DVec3::from_array([3, 4, 5].map(|k| f64::from(sides[k][i])));

@@ -370,7 +370,7 @@ impl Tally {
         cast.walk(false, |range| {
             *budget = budget.saturating_sub(range.len());
             for triangle in range {
-                let other = tree.faces[triangle as usize];
+                let other = tree.face(triangle);
                 if other as usize == part {
                     continue;
                 }

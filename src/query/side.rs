@@ -7,6 +7,7 @@ use crate::geometry::triangulate::Triangulator;
 use crate::geometry::{direction, unit_scale};
 use crate::matching::NONE;
 use glam::DVec3;
+use smallvec::SmallVec;
 
 impl MeshIndex<'_> {
     /// The side of `point` by the normal at its nearest point `place`, on a part of a triangle: the sum of the unit normals
@@ -32,8 +33,14 @@ impl MeshIndex<'_> {
         // The normals of the triangles of a face that have all these corners.
         let mut sum_over = |face: u32, of: &[u32]| {
             let around = mesh.loop_slots(mesh.face_halfedge[face as usize]);
-            let polygon: Vec<u32> = around.map(|h| mesh.origin[h as usize]).collect();
-            let triangles = rule.triangulate(&polygon, |v| mesh.positions[v as usize]).iter();
+            let polygon: SmallVec<[u32; 8]> = around.map(|h| mesh.origin[h as usize]).collect();
+            let whole;
+            let triangles = if let [a, b, c] = polygon[..] {
+                whole = [[a, b, c]];
+                whole.iter()
+            } else {
+                rule.triangulate(&polygon, |v| mesh.positions[v as usize]).iter()
+            };
             let normal = |t: &[u32; 3]| match (of, t.iter().position(|v| *v == of[0])) {
                 ([_], Some(i)) => {
                     let at = |k: usize| mesh.positions[t[(i + k) % 3] as usize] * self.tree.scale;
