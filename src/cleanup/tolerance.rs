@@ -40,8 +40,9 @@ pub struct ProposedTolerance {
 /// that are there twice show only in the weld: there one face in 25 may fold, and third and later faces of edges may be up
 /// to a tenth of the naked edges. A file without naked edges gets 0, and so does one whose boundary is meant.
 ///
-/// What it asks of distances: no more than a quarter of the length of the edges they join, on the average; and, unless
-/// two in five of all edges are such, a thousandth of the box's diagonal.
+/// What it asks of the distances up to a gap and behind the one before: no more than a tenth of the length of the edges
+/// they join, for most, and a thousandth of the box's diagonal; if two in five of all edges are such, no more than half of
+/// the length of the edges.
 ///
 /// O(n log n) in the corners; a few welds.
 ///
@@ -272,8 +273,10 @@ impl Edges {
             .filter(|f| f.0 > 0.0)
             .collect();
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let mut gaps = Vec::new();
-        for i in (0..found.len()).rev() {
+        let mut gaps: Vec<Gap> = Vec::new();
+        // Where the distances begin that no gap so far accounts for.
+        let mut own = 0;
+        for i in 0..found.len() {
             let (last, next) = (found[i].0, found.get(i + 1).map_or(f64::INFINITY, |f| f.0));
             if next < 2.0 * last {
                 continue;
@@ -283,15 +286,16 @@ impl Edges {
             let mut parts: Vec<f64> = found[from..=i].iter().map(|f| f.1).collect();
             parts.sort_unstable_by(f64::total_cmp);
             let part = parts[parts.len() / 2];
-            let is_soup = (i + 1) as f64 / asked as f64 * self.naked as f64 >= 0.4 * edge_count as f64;
+            // If a gap below has done with most of a soup, what is left is no soup.
+            let is_soup = (i + 1 - own) as f64 / asked as f64 * self.naked as f64 >= 0.4 * edge_count as f64;
             let last = last / self.scale;
             if part <= 0.5 && (is_soup || part <= 0.1 && last <= diagonal * 1e-3) {
                 gaps.push(Gap { last, next: next / self.scale, count: i + 1 });
-            }
-            if gaps.len() == 4 {
-                break;
+                own = i + 1;
             }
         }
+        gaps.reverse();
+        gaps.truncate(4);
         gaps
     }
 }
