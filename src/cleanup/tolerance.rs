@@ -7,7 +7,7 @@ use super::{CleanError, Weld};
 use crate::geometry::measure::Aabb;
 use crate::geometry::{distance, unit_scale};
 use crate::matching::{Chains, Matching};
-use crate::topology::{FaceOf, next_corner};
+use crate::topology::{FaceOf, duplicate_faces, next_corner};
 use crate::{Cancelled, Control, PolygonSoup, Polygons};
 use glam::DVec3;
 
@@ -183,11 +183,30 @@ fn try_weld(
             }
         }
     }
-    let chains = Chains::new(positions.len(), &left);
+    let mut chains = Chains::new(positions.len(), &left);
     if chains.more_uses() > may.more {
-        return Ok(Trial::Folds);
+        // One large polygon that is there twice has as many uses too many as it has edges.
+        drop(chains);
+        left = once(positions.len(), &left);
+        chains = Chains::new(positions.len(), &left);
+        if chains.more_uses() > may.more {
+            return Ok(Trial::Folds);
+        }
     }
     Ok(Trial::Leaves(chains.into_pairing().open.len(), merged))
+}
+
+/// The faces without those that are there already.
+fn once(vertex_count: usize, polygons: &Polygons) -> Polygons {
+    let again = duplicate_faces(polygons, &Matching::new(vertex_count, polygons));
+    let mut left = Polygons::with_capacity(polygons.len() - again.len(), polygons.corners().len());
+    let mut again = again.iter().peekable();
+    for (f, face) in (0u32..).zip(polygons.iter()) {
+        if again.next_if(|a| a.0 == f).is_none() {
+            left.push(face.iter().copied());
+        }
+    }
+    left
 }
 
 /// A distance of naked edges after which there is none for a while.
