@@ -35,10 +35,11 @@ pub struct ProposedTolerance {
 /// After an exact weld each naked edge is asked for the naked edge that it comes to lie on if ends are moved least. In
 /// a soup of which every corner was moved a little, these distances stop at the largest move, and then for a long while
 /// nothing follows: a tolerance is proposed where there is such a gap, below the lengths of the edges, and tried. It
-/// is taken if it folds no more than one face in five hundred, makes no new edge of three or more faces, and leaves as few
-/// naked edges as a greater one, but for one in a hundred. Where faces do not share vertices yet, needles, fins and faces
-/// that are there twice show only in the weld: there one face in 25 may fold, and third and later faces of edges may be up
-/// to a tenth of the naked edges. A file without naked edges gets 0, and so does one whose boundary is meant.
+/// is taken if it folds no more than one face in five hundred, makes no new edge of three or more faces, joins at least a
+/// quarter of the naked edges that have such a distance, and leaves as few of them as a greater one, but for one in a
+/// hundred. Where faces do not share vertices yet, needles, fins and faces that are there twice show only in the weld: there
+/// one face in 25 may fold, and third and later faces of edges may be up to a tenth of the naked edges. A file without
+/// naked edges gets 0, and so does one whose boundary is meant.
 ///
 /// What it asks of the distances up to a gap and behind the one before: no more than a tenth of the length of the edges
 /// they join, for most, and a thousandth of the box's diagonal; if two in five of all edges are such, no more than half of
@@ -116,15 +117,21 @@ pub(super) fn propose(
         let most = gap.tolerance();
         for t in [most, most * 0.7, gap.last * 1.01, gap.last * 0.5, gap.last * 0.25] {
             proposed.tried += 1;
-            match try_weld(positions, polygons, t, may, control)? {
-                Trial::Folds if t == most => proposed.reach = proposed.reach.max(most),
-                Trial::Leaves(naked, merged) if naked < before => {
-                    taken.push((naked, t, merged));
+            let trial = try_weld(positions, polygons, t, may, control)?;
+            let joins = before.saturating_sub(trial.naked) >= gap.promised / 4;
+            if trial.folded <= may.folded && trial.more <= may.more {
+                if joins && trial.naked < before {
+                    taken.push((trial.naked, t, trial.merged));
                     // Less than nearly as many could not leave nearly as few naked edges.
                     enough = gap.count - gap.count / 50;
                     break;
                 }
-                _ => {}
+            } else if t == most {
+                // Of a soup, a weld makes a surface, but for some faces.
+                let makes_surface = joins && trial.folded <= polygons.len() / 4 && trial.more <= before / 4;
+                if !gap.is_soup || makes_surface {
+                    proposed.reach = proposed.reach.max(most);
+                }
             }
         }
     }
@@ -150,11 +157,15 @@ struct Bounds {
 }
 
 /// What a weld on trial does.
-enum Trial {
-    /// More than it may.
-    Folds,
-    /// That many naked edges are left; and what vertices are merged into.
-    Leaves(usize, Vec<u32>),
+struct Trial {
+    /// Faces that are lost.
+    folded: usize,
+    /// Third and later faces of edges.
+    more: usize,
+    /// Naked edges that are left.
+    naked: usize,
+    /// What vertices are merged into.
+    merged: Vec<u32>,
 }
 
 /// Welds on trial.
@@ -166,34 +177,28 @@ fn try_weld(
     control: &mut Control<'_>,
 ) -> Result<Trial, Cancelled> {
     control.report("propose a tolerance", 0.0)?;
-    let Ok(merged) = weld(positions, Some(tolerance), &mut Control::none()) else { return Ok(Trial::Folds) };
+    let merged = weld(positions, Some(tolerance), &mut Control::none()).unwrap_or_default();
     let mut left = Polygons::with_capacity(polygons.len(), polygons.corners().len());
     let mut sorted: Vec<u32> = Vec::new();
-    let mut folded = 0;
+    let of = |v: &u32| merged.get(*v as usize).copied().unwrap_or(*v);
     for face in polygons.iter() {
         sorted.clear();
-        sorted.extend(face.iter().map(|&v| merged[v as usize]));
+        sorted.extend(face.iter().map(of));
         sorted.sort_unstable();
         if sorted.windows(2).all(|w| w[0] != w[1]) {
-            left.push(face.iter().map(|&v| merged[v as usize]));
-        } else {
-            folded += 1;
-            if folded > may.folded {
-                return Ok(Trial::Folds);
-            }
+            left.push(face.iter().map(of));
         }
     }
+    let folded = polygons.len() - left.len();
     let mut chains = Chains::new(positions.len(), &left);
-    if chains.more_uses() > may.more {
+    if folded <= may.folded && chains.more_uses() > may.more {
         // One large polygon that is there twice has as many uses too many as it has edges.
         drop(chains);
         left = once(positions.len(), &left);
         chains = Chains::new(positions.len(), &left);
-        if chains.more_uses() > may.more {
-            return Ok(Trial::Folds);
-        }
     }
-    Ok(Trial::Leaves(chains.into_pairing().open.len(), merged))
+    let more = chains.more_uses();
+    Ok(Trial { folded, more, naked: chains.into_pairing().open.len(), merged })
 }
 
 /// The faces without those that are there already.
@@ -218,6 +223,10 @@ struct Gap {
     next: f64,
     /// How many distances lie before it.
     count: usize,
+    /// How many naked edges that are in all.
+    promised: usize,
+    /// Whether two in five of all edges have a distance before it, and behind the gap before.
+    is_soup: bool,
 }
 
 impl Gap {
@@ -306,10 +315,12 @@ impl Edges {
             parts.sort_unstable_by(f64::total_cmp);
             let part = parts[parts.len() / 2];
             // If a gap below has done with most of a soup, what is left is no soup.
-            let is_soup = (i + 1 - own) as f64 / asked as f64 * self.naked as f64 >= 0.4 * edge_count as f64;
+            let in_all = |count: usize| count as f64 / asked as f64 * self.naked as f64;
+            let is_soup = in_all(i + 1 - own) >= 0.4 * edge_count as f64;
             let last = last / self.scale;
             if part <= 0.5 && (is_soup || part <= 0.1 && last <= diagonal * 1e-3) {
-                gaps.push(Gap { last, next: next / self.scale, count: i + 1 });
+                let promised = in_all(i + 1) as usize;
+                gaps.push(Gap { last, next: next / self.scale, count: i + 1, promised, is_soup });
                 own = i + 1;
             }
         }

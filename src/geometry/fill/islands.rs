@@ -11,9 +11,11 @@ const SAMPLES: usize = 8;
 /// Area vectors of an outer and an inner loop enclose at least the angle with this cosine.
 const AGAINST: f64 = -0.5;
 
-/// So many steps along outer loops are taken in all: seconds. Tens of thousands of holes within a loop of tens of thousands
-/// of edges need fewer; what is left after that is taken to lie beside each other.
-const STEPS: usize = 1 << 31;
+/// So many steps along outer loops are taken in all, and a pair of loops counts as [`PAIR`]: a second or two. Tens of
+/// thousands of holes within a loop of tens of thousands of edges need no more; what is left after that is taken to lie
+/// beside each other.
+const STEPS: usize = 1 << 30;
+const PAIR: usize = 16;
 
 /// A loop as a plane figure.
 struct Outline {
@@ -144,7 +146,7 @@ pub(super) fn shared(
         let start = order.partition_point(|&b| begins[b][axis] < min[axis]);
         let mut flat = None;
         for &b in order[start..].iter().take_while(|&&b| begins[b][axis] <= max[axis]) {
-            let Some(left) = steps.checked_sub(1) else { break };
+            let Some(left) = steps.checked_sub(PAIR) else { break };
             steps = left;
             let is_near = begins[b].cmpge(min).all() && begins[b].cmple(max).all();
             if a == b || !is_near || !outer.may_hold(&outlines[b], mesh, scale, depth) {
