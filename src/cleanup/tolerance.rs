@@ -194,7 +194,11 @@ fn try_weld(
     if folded <= may.folded && chains.more_uses() > may.more {
         // One large polygon that is there twice has as many uses too many as it has edges.
         drop(chains);
-        left = once(positions.len(), &left);
+        let single = once(positions.len(), &left);
+        // Where many are, the weld has laid them on each other.
+        if left.len() - single.len() <= polygons.len() / 10 {
+            left = single;
+        }
         chains = Chains::new(positions.len(), &left);
     }
     let more = chains.more_uses();
