@@ -126,10 +126,10 @@ impl Mesh {
             number[v as usize] = i as u32;
         }
         let mut polygons = Polygons::with_capacity(self.face_count(), 3 * self.face_count());
-        for f in self.faces.in_user_order() {
+        self.for_each_in_user_order(|f| {
             let corners = self.loop_slots(self.face_halfedge[f as usize]);
             polygons.push(corners.map(|h| number[self.origin[h as usize] as usize]));
-        }
+        });
         let positions = order.iter().map(|&v| self.positions[v as usize]).collect();
         IndexedMesh::trusted(positions, polygons, None).carrying(self.ordered_attributes(&order))
     }
@@ -205,16 +205,17 @@ impl Linking {
             vertices: Arena::filled(vertices),
             edges: Arena::filled(edges),
             faces: Arena::filled(faces),
-            // Every entry that means anything is written later.
+            // Every entry that means anything is written later, so that no memory is touched twice.
             next: vec![0; halfedges],
             prev: vec![0; halfedges],
             origin: vec![0; halfedges],
-            face: vec![NONE; halfedges],
+            face: vec![0; halfedges],
             vertex_halfedge: vec![NONE; vertices + 1],
             face_halfedge: Vec::with_capacity(faces + 1),
             ..Mesh::default()
         };
         mesh.face_halfedge.push(NONE);
+        mesh.face[..2].fill(NONE);
         Self { mesh }
     }
 
@@ -257,6 +258,7 @@ fn link_boundary(mesh: &mut Mesh, open: &[u32]) -> bool {
     for h in boundary() {
         let v = mesh.origin[mesh.next[h ^ 1] as usize];
         mesh.origin[h] = v;
+        mesh.face[h] = NONE;
         let out = &mut mesh.vertex_halfedge[v as usize];
         if mesh.face[*out as usize] == NONE {
             return false;

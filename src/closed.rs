@@ -1,6 +1,6 @@
 //! The last rung: proof that a mesh is closed, the only door to volume and mass properties.
 
-use crate::geometry::measure::{Measures, measures};
+use crate::geometry::measure::{Measures, measures, volume};
 use crate::{HalfedgeKey, Mesh};
 use glam::DVec3;
 
@@ -64,7 +64,8 @@ impl<'m> Closed<'m> {
     /// polygons that are not flat count by one fixed triangulation rule that does not depend on winding. Infinite if
     /// the volume is beyond f64. O(corners).
     pub fn volume(&self) -> f64 {
-        self.measures().volume
+        let pool = self.mesh.to_indexed();
+        volume(pool.positions(), pool.polygons())
     }
 
     /// The area of the surface in square units. O(corners).

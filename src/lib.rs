@@ -41,6 +41,7 @@ pub mod io;
 mod key;
 mod matching;
 mod mesh;
+mod order;
 mod parallel;
 mod query;
 mod report;
@@ -55,7 +56,9 @@ pub mod walking {}
 pub use attributes::{Attributes, FaceGroups, GroupName, SetAttributeError};
 pub use build::{BuildDefect, BuildError, BuildWithError};
 pub use closed::{Closed, NotClosed};
-pub use column::{Column, ColumnError, ColumnValues, ElementKey, Event, Interpolate, Rule, Value};
+pub use column::{
+    Column, ColumnError, ColumnValues, Direction, ElementKey, Event, Interpolate, Rule, Turning, Value,
+};
 pub use control::{Cancelled, Control, Progress};
 pub use edit::changes::{Change, Lineage, Numbering};
 pub use edit::undo::{Checkpoint, UnknownCheckpoint};

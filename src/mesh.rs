@@ -315,6 +315,15 @@ impl Mesh {
             + self.checkpoint_bytes()
     }
 
+    /// Calls `f` with every live face slot in the user's order.
+    pub(crate) fn for_each_in_user_order(&self, f: impl FnMut(u32)) {
+        if self.faces.is_in_user_order() {
+            self.faces.live().for_each(f);
+        } else {
+            self.faces.in_user_order().into_iter().for_each(f);
+        }
+    }
+
     #[inline]
     pub(crate) fn vertex_slot(&self, v: VertexKey) -> Option<u32> {
         self.vertices.slot(v)

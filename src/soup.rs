@@ -83,6 +83,15 @@ impl Polygons {
         self.starts.push(self.corners.len());
     }
 
+    /// Appends triangles.
+    #[cfg(feature = "io")]
+    pub(crate) fn push_triangles(&mut self, triangles: impl Iterator<Item = [u32; 3]>) {
+        for corners in triangles {
+            self.corners.extend_from_slice(&corners);
+            self.starts.push(self.corners.len());
+        }
+    }
+
     /// The number of faces.
     pub fn len(&self) -> usize {
         self.starts.len() - 1

@@ -162,9 +162,9 @@ impl Mesh {
         }
     }
 
-    /// The half-edge from one vertex to another, or `None` if no edge joins them or a key is dead. O(valence of `a`).
+    /// The half-edge from one vertex to another, or `None` if no edge joins them or a key is dead. O(the lower valence).
     pub fn find_halfedge(&self, a: VertexKey, b: VertexKey) -> Option<HalfedgeKey> {
         let (a, b) = (self.vertex_slot(a)?, self.vertex_slot(b)?);
-        self.outgoing_slots(a).find(|&h| self.origin[h as usize ^ 1] == b).map(|h| self.halfedge_key(h))
+        self.find_slot(a, b).map(|h| self.halfedge_key(h))
     }
 }

@@ -1,12 +1,15 @@
 //! Turning outward: solids face out, cavities in, and what is not sure stays.
 
+#[path = "corpus/mod.rs"]
+mod corpus;
 #[path = "shapes/mod.rs"]
 mod shapes;
 
+use meshwright::cleanup::{CleanOptions, Weld, clean, index};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
     Cancelled, Control, IndexedMesh, Mesh, OutwardError, OutwardOptions, OutwardPart, Progress,
-    orient_outward,
+    orient_outward, unify_winding,
 };
 use shapes::{both, cube, cube_at, mesh, torus};
 use std::ops::ControlFlow;
@@ -142,4 +145,32 @@ fn bad_confidence_and_cancelling_change_nothing() {
     let options = OutwardOptions { control: Control::new(&mut hook), ..Default::default() };
     assert_eq!(mesh.orient_outward(options), Err(OutwardError::Cancelled(Cancelled)));
     assert_eq!(volume(&mesh), -1.0);
+}
+
+/// A doubled sheet: closed, and nothing within.
+#[test]
+fn a_closed_part_of_the_corpus_without_volume_stays_as_it_is_and_says_so() {
+    let Some(rows) = corpus::rows() else { return };
+    let mut met = 0;
+    for row in rows.iter().filter(|r| r.path.ends_with("assimp__regr_3429812.obj")) {
+        let soup = row.load().expect("read");
+        let pool = index(&soup, Weld::Exact).expect("always answers").value;
+        let unified = unify_winding(&pool.topology()).expect("orientable").value;
+        for pool in [unified.clone(), unified.reversed()] {
+            let found = orient_outward(&pool.topology(), OutwardOptions::default()).expect("not cancelled");
+            assert!(
+                found.parts.iter().all(|p| p.closed && p.confidence == 0.0 && !p.reversed),
+                "{:?}",
+                found.parts
+            );
+            assert!(found.outcome.value == pool && found.outcome.report.is_empty(), "{}", row.path);
+            let mut mesh = clean(&pool.into(), CleanOptions::default()).expect("always answers").value;
+            let before = mesh.to_indexed();
+            let parts = mesh.orient_outward(OutwardOptions::default()).expect("not cancelled");
+            assert!(parts.iter().all(|p| p.closed && p.confidence == 0.0 && !p.reversed), "{}", row.path);
+            assert!(mesh.to_indexed() == before, "{}", row.path);
+        }
+        met += 1;
+    }
+    assert_eq!(met, 1);
 }

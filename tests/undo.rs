@@ -218,7 +218,8 @@ fn slots_of_removed_elements_are_reused_only_after_forgetting() {
     };
     let before = slots(&mesh);
     churn(&mut mesh);
-    assert!(slots(&mesh) < 3 * before, "reused at once without checkpoints");
+    // An unedited mesh keeps no versions, and the first birth doubles the columns.
+    assert!(slots(&mesh) < 4 * before, "reused at once without checkpoints");
     mesh.checkpoint();
     churn(&mut mesh);
     let grown = slots(&mesh);

@@ -13,6 +13,7 @@ use meshwright::{
 };
 use proptest::prelude::*;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn weld(mesh: &Mesh, tolerance: f64) -> Outcome<Mesh> {
     let outcome = mesh.weld(WeldOptions { tolerance, ..Default::default() }).expect("always answers");
@@ -276,6 +277,42 @@ fn models_whose_merges_are_taken_back_are_welded_once() {
         }
     }
     assert!(welded > 8, "only {welded} were welded");
+}
+
+/// Every readable file of up to 30,000 faces, at tolerances from none to a thousandth of its diagonal.
+#[test]
+fn a_second_weld_of_any_corpus_file_changes_nothing() {
+    let Some(rows) = corpus::rows() else { return };
+    let small = |r: &corpus::Row| r.is_readable() && r.number("faces").is_some_and(|n| n <= 30_000.0);
+    let rows: Vec<corpus::Row> = rows.into_iter().filter(small).collect();
+    let (next, welded) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let Ok(soup) = row.load() else { continue };
+                    let mesh = clean(&soup, CleanOptions::default()).expect("always answers").value;
+                    let Some(bounds) = mesh.bounds() else { continue };
+                    for share in [0.0, 1e-9, 1e-6, 1e-3] {
+                        let tolerance = share * bounds.min.distance(bounds.max);
+                        let once = weld(&mesh, tolerance);
+                        let twice = weld(&once.value, tolerance);
+                        let is_same = twice.value.to_indexed() == once.value.to_indexed();
+                        assert!(is_same, "{}, {share}: {:?}", row.path, twice.report.counts());
+                        assert!(
+                            twice.report.is_empty() && twice.maps.vertices.is_identity(),
+                            "{}, {share}",
+                            row.path
+                        );
+                        assert!(twice.maps.faces.is_identity(), "{}, {share}", row.path);
+                        let is_less = once.value.vertex_count() < mesh.vertex_count();
+                        welded.fetch_add(usize::from(is_less), Ordering::Relaxed);
+                    }
+                }
+            });
+        }
+    });
+    assert!(welded.into_inner() > 60, "more files have something to weld");
 }
 
 fn jittered(seed: u64, size: f64) -> IndexedMesh {

@@ -1,9 +1,11 @@
 """How far reduced meshes are from their original: libigl's qslim beside the results of other programs.
 
-Usage: reduce.py ORIGINAL.ply FACES NAME=RESULT.ply...
+Usage: reduce.py ORIGINAL FACES NAME=RESULT.ply... [--lines]    (the original as .ply or .raw; NAME=qslim has libigl make it;
+--lines prints as the other programs here do, lengths in millionths of the diagonal)
 
 Points are spread over both surfaces by area; the distance from each to the other surface gives the mean (the greater of the
-two directions) and the maximum, as shares of the box's diagonal. Needs libigl: the environment that the tests make has it.
+two directions) and the maximum, as shares of the box's diagonal. Edges with three or more faces are counted: no result of a
+reduction should have any. Needs libigl: the environment that the tests make has it.
 """
 
 import sys
@@ -18,6 +20,10 @@ SAMPLES = 400_000
 def read(path):
     """Vertices and triangles of a binary PLY file of doubles, or of an ASCII one."""
     data = open(path, "rb").read()
+    if path.endswith(".raw"):
+        n, m = np.frombuffer(data, "<u8", 2)
+        v = np.frombuffer(data, "<f8", 3 * n, 16).reshape(n, 3).copy()
+        return v, np.frombuffer(data, "<u4", 3 * m, 16 + 24 * n).reshape(m, 3).astype(np.int64)
     end = data.index(b"end_header\n") + len(b"end_header\n")
     header = data[:end].decode().splitlines()
     count = {line.split()[1]: int(line.split()[2]) for line in header if line.startswith("element")}
@@ -56,13 +62,19 @@ def distances(v, f, w, g, diagonal):
     return [x / diagonal for x in (mean, most, square)]
 
 
+def crowded(f):
+    """How many edges have three or more faces."""
+    edges = np.sort(f[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return int((np.unique(edges[:, 0] << 32 | edges[:, 1], return_counts=True)[1] > 2).sum())
+
+
 def main():
     """Prints a line per result."""
     v, f = read(sys.argv[1])
     faces = int(sys.argv[2])
     diagonal = np.linalg.norm(v.max(0) - v.min(0))
     results = {}
-    for argument in sys.argv[3:]:
+    for argument in (a for a in sys.argv[3:] if a != "--lines"):
         name, path = argument.rsplit("=", 1)
         results[name] = path if path == "qslim" else read(path)
     for name, result in results.items():
@@ -73,7 +85,12 @@ def main():
             note = f"{time.process_time() - start:.2f} s"
             result = np.asarray(w), np.asarray(g).astype(np.int64)
         mean, most, square = distances(v, f, *result, diagonal)
-        print(f"{name:14} {len(result[1]):8} faces  mean {mean:.3e}  max {most:.3e}  rms {square:.3e}  {note}", flush=True)
+        if "--lines" in sys.argv:
+            for what, value, unit in [("mean", mean * 1e6, "ppm"), ("max", most * 1e6, "ppm"), ("crowded", crowded(result[1]), "edges")]:
+                print(f"{name}\treduce_{what}\t{value:.3f}\t{unit}", flush=True)
+            continue
+        row = f"{name:14} {len(result[1]):8} faces  mean {mean:.3e}  max {most:.3e}  rms {square:.3e}"
+        print(f"{row}  crowded edges {crowded(result[1])}  {note}", flush=True)
 
 
 if __name__ == "__main__":

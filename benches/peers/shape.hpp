@@ -164,3 +164,20 @@ void time_edits(const char* name, const std::string& suffix, const Shape& shape,
     print(name, what + "_done" + suffix, double(done), "edits");
   }
 }
+
+// A binary PLY file of doubles, as reduce.py reads it.
+inline void write_ply(const char* path, const std::vector<std::array<double, 3>>& points,
+                      const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::ofstream out(path, std::ios::binary);
+  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << points.size()
+      << "\nproperty double x\nproperty double y\nproperty double z\nelement face " << triangles.size()
+      << "\nproperty list uchar int vertex_indices\nend_header\n";
+  out.write(reinterpret_cast<const char*>(points.data()), points.size() * sizeof points[0]);
+  for (const auto& t : triangles) {
+    out.put(3);
+    out.write(reinterpret_cast<const char*>(t.data()), sizeof t);
+  }
+  if (!out) {
+    fail(std::string("cannot write ") + path);
+  }
+}

@@ -2,7 +2,6 @@
 
 use super::{Attributes, FaceGroups, GroupName};
 use crate::column::{Column, Event, Interpolate, Kind, Rule, Store, Value};
-use crate::geometry::direction;
 use crate::matching::NONE;
 use crate::mesh::read;
 use crate::report::Attribute;
@@ -66,27 +65,6 @@ pub enum SetAttributeError {
     /// The value is NaN or infinite.
     #[error("the value is not finite")]
     NonFinite,
-}
-
-/// Normals are mixed like any vectors and brought back to unit length.
-fn mixed_normal(sources: &[(&DVec3, f64)]) -> DVec3 {
-    direction(sources.iter().map(|&(&normal, weight)| direction(normal) * weight).sum())
-}
-
-fn normal_rule() -> Rule<DVec3> {
-    Rule::custom(|event, sources: &[(&DVec3, f64)]| match (event, sources) {
-        // Moving a vertex leaves its normal as it is.
-        (Event::Move, [(normal, _), ..]) => **normal,
-        _ => mixed_normal(sources),
-    })
-}
-
-fn corner_normal_rule() -> Rule<Option<DVec3>> {
-    Rule::custom(|_, sources: &[(&Option<DVec3>, f64)]| {
-        let counting = || sources.iter().filter(|s| s.1 != 0.0);
-        let given: Vec<(&DVec3, f64)> = counting().filter_map(|(n, w)| Some((n.as_ref()?, *w))).collect();
-        (given.len() == counting().count()).then(|| mixed_normal(&given))
-    })
 }
 
 /// Interpolates, but for sums beyond the largest number: there the first source stays.
@@ -202,7 +180,7 @@ impl Mesh {
         }
         let column = match self.carried.normals {
             Some(column) => column,
-            None => self.add_column(DVec3::ZERO, normal_rule()),
+            None => self.add_column(DVec3::ZERO, Rule::normals()),
         };
         self.carried.normals = Some(column);
         self.write_value(Kind::Vertex, column.index, slot, normal);
@@ -242,7 +220,7 @@ impl Mesh {
         }
         let column = match self.carried.corner_normals {
             Some(column) => column,
-            None => self.add_column(None, corner_normal_rule()),
+            None => self.add_column(None, Rule::normals()),
         };
         self.carried.corner_normals = Some(column);
         self.write_value(Kind::Corner, column.index, slot, normal);
@@ -333,7 +311,7 @@ impl Mesh {
             }
             None => {
                 self.carried.normals =
-                    Some(self.column_of(Kind::Vertex, normals, DVec3::ZERO, normal_rule()));
+                    Some(self.column_of(Kind::Vertex, normals, DVec3::ZERO, Rule::normals()));
             }
         }
     }
@@ -346,44 +324,6 @@ impl Mesh {
         rule: Rule<T>,
     ) -> Column<K, T> {
         Column::new(self.columns.add(kind, Store::of(values, default, rule)))
-    }
-
-    /// Turns the normals that a reversed part carries. Corner normals have moved with their corners.
-    pub(crate) fn negate_normals(&mut self, vertices: &[u32], faces: &[u32]) {
-        if let Some(column) = self.carried.normals {
-            for &v in vertices {
-                if let Some(normal) = self.stored(Kind::Vertex, Some(column), v) {
-                    self.write_value(Kind::Vertex, column.index, v, -normal);
-                }
-            }
-        }
-        if let Some(column) = self.carried.corner_normals {
-            let corners: Vec<u32> =
-                faces.iter().flat_map(|&f| self.loop_slots(self.face_halfedge[f as usize])).collect();
-            for h in corners {
-                if let Some(normal) = self.stored(Kind::Corner, Some(column), h).flatten() {
-                    self.write_value(Kind::Corner, column.index, h, Some(-normal));
-                }
-            }
-        }
-    }
-
-    /// Turns all carried normals, of vertices and of corners.
-    pub(crate) fn turn_normals(&mut self, turn: impl Fn(DVec3) -> DVec3) {
-        if let Some(column) = self.carried.normals {
-            for v in self.vertices.live().collect::<Vec<_>>() {
-                if let Some(normal) = self.stored(Kind::Vertex, Some(column), v) {
-                    self.write_value(Kind::Vertex, column.index, v, turn(normal));
-                }
-            }
-        }
-        if let Some(column) = self.carried.corner_normals {
-            for h in self.ordered_slots(Kind::Corner) {
-                if let Some(normal) = self.stored(Kind::Corner, Some(column), h).flatten() {
-                    self.write_value(Kind::Corner, column.index, h, Some(turn(normal)));
-                }
-            }
-        }
     }
 
     /// Takes over the attributes of the pool that a fresh mesh was built from; `halfedge_of` gives the half-edge of each
@@ -412,8 +352,7 @@ impl Mesh {
         }
         if let Some(normals) = &attributes.corner_normals {
             let values = spread(normals, corners, &halfedge_of);
-            self.carried.corner_normals =
-                Some(self.column_of(Kind::Corner, values, None, corner_normal_rule()));
+            self.carried.corner_normals = Some(self.column_of(Kind::Corner, values, None, Rule::normals()));
         }
         if let Some(uvs) = &attributes.corner_uvs {
             let values = spread(uvs, corners, &halfedge_of);

@@ -71,7 +71,7 @@ pub(super) fn carry<'r>(pool: &Pool<'_>, new_of: impl Fn(usize) -> &'r [u32]) ->
     carried
 }
 
-fn has_attributes(soup: &PolygonSoup) -> bool {
+pub(super) fn has_attributes(soup: &PolygonSoup) -> bool {
     !soup.vertex_normals.is_empty()
         || !soup.vertex_colors.is_empty()
         || soup.corner_normals.is_some()

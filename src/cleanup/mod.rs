@@ -261,7 +261,8 @@ pub fn index_with(
 ) -> Result<Outcome<IndexedMesh>, CleanError> {
     control.report("weld", 0.0)?;
     // The pool is the first two fifths of a clean-up, and nearly all there is to this.
-    let pool = Pool::new(soup, weld, &mut control.part(0.0, 2.0))?;
+    let how = if carry::has_attributes(soup) { Pool::new } else { Pool::unlisted };
+    let pool = how(soup, weld, &mut control.part(0.0, 2.0))?;
     control.report("carry attributes", 0.8)?;
     Ok(outcome(pool))
 }

@@ -3,7 +3,7 @@
 use super::carry::{Carried, carry};
 use super::polygons::{PolygonRepair, Repair};
 use super::tolerance::{ProposedTolerance, propose};
-use super::weld::weld;
+use super::weld::Welded;
 use super::{CleanError, Sources, Weld};
 use crate::attributes::Attributes;
 use crate::geometry::distance;
@@ -17,6 +17,8 @@ pub(super) struct Pool<'s> {
     pub(super) soup: &'s PolygonSoup,
     pub(super) positions: Vec<DVec3>,
     pub(super) polygons: Polygons,
+    /// Whether all faces are as they were, and the sources of faces and corners are not [listed](Self::list) yet.
+    unlisted: bool,
     /// For each face the soup's face it was made of.
     pub(super) face_source: Vec<u32>,
     /// For each corner the soup's corner it was; from the number of the soup's corners on, one of `blends`.
@@ -78,6 +80,17 @@ impl<'s> Pool<'s> {
         how: Weld,
         control: &mut Control<'_>,
     ) -> Result<Self, CleanError> {
+        let mut pool = Self::unlisted(soup, how, control)?;
+        pool.list();
+        Ok(pool)
+    }
+
+    /// The same, perhaps without the sources of faces and corners: enough to be accounted for, if there are no attributes.
+    pub(super) fn unlisted(
+        soup: &'s PolygonSoup,
+        how: Weld,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
         let elements = soup.positions.len().max(soup.polygons.len()).max(soup.polygons.corners().len());
         if elements > MAX_ELEMENTS {
             return Err(CleanError::TooLarge { elements });
@@ -97,32 +110,34 @@ impl<'s> Pool<'s> {
                         };
                         let merged_into = exact.vertex_of.iter().map(|&v| named(v)).collect();
                         drop(exact);
-                        let pool = Self::welded(soup, merged_into, Some(proposed.tolerance), control)?;
+                        let welded = Welded::numbered(&soup.positions, merged_into);
+                        let pool = Self::welded(soup, welded, Some(proposed.tolerance), control)?;
                         Ok(Self { proposed: Some(proposed), ..pool })
                     }
                 };
             }
             Weld::Within(t) => Some(t),
         };
-        let merged_into = weld(&soup.positions, tolerance, control)?;
-        Self::welded(soup, merged_into, tolerance, control)
+        let welded = Welded::new(&soup.positions, tolerance, control)?;
+        Self::welded(soup, welded, tolerance, control)
     }
 
-    /// The pool of a soup of which each vertex is merged into the given one.
+    /// The pool of a soup with its vertices welded.
     fn welded(
         soup: &'s PolygonSoup,
-        merged_into: Vec<u32>,
+        welded: Welded,
         tolerance: Option<f64>,
         control: &mut Control<'_>,
     ) -> Result<Self, CleanError> {
         let mut pool = Self {
             soup,
-            positions: Vec::new(),
-            polygons: Polygons::with_capacity(soup.polygons.len(), soup.polygons.corners().len()),
-            face_source: Vec::with_capacity(soup.polygons.len()),
-            corner_source: Vec::with_capacity(soup.polygons.corners().len()),
-            vertex_source: Vec::new(),
-            vertex_of: merged_into,
+            positions: welded.positions,
+            polygons: Polygons::new(),
+            unlisted: false,
+            face_source: Vec::new(),
+            corner_source: Vec::new(),
+            vertex_source: welded.sources,
+            vertex_of: welded.of,
             flipped: Vec::new(),
             parted: Vec::new(),
             cut: Vec::new(),
@@ -134,10 +149,10 @@ impl<'s> Pool<'s> {
             proposed: None,
             degenerate_faces: 0,
         };
-        let dropped = pool.number_vertices();
+        let dropped = pool.drop_vertices();
         let merged = soup.positions.len() - dropped - pool.positions.len();
         let repairs = pool.take_faces(dropped, control)?;
-        let elements = pool.corner_source.len();
+        let elements = pool.polygons.corners().len();
         if elements > MAX_ELEMENTS {
             // Cutting faces into triangles can triple their corners.
             return Err(CleanError::TooLarge { elements });
@@ -151,25 +166,14 @@ impl<'s> Pool<'s> {
         Ok(pool)
     }
 
-    /// Numbers the kept vertices in the soup's order; returns how many are not finite.
-    fn number_vertices(&mut self) -> usize {
-        let mut dropped = 0;
-        for v in 0..self.vertex_of.len() {
-            match self.vertex_of[v] {
-                NONE => {
-                    dropped += 1;
-                    self.record(Step::DropInvalid, Kind::NonFiniteVertex, Element::Vertex(v as u32), None);
-                }
-                kept if kept as usize == v => {
-                    self.vertex_of[v] = self.positions.len() as u32;
-                    self.positions.push(self.soup.positions[v]);
-                    self.vertex_source.push(v as u32);
-                }
-                // The kept vertex is lower, so it has its number.
-                kept => self.vertex_of[v] = self.vertex_of[kept as usize],
-            }
+    /// Records the vertices that are not finite; returns how many there are.
+    fn drop_vertices(&mut self) -> usize {
+        let of = self.vertex_of.iter().zip(0..);
+        let dropped: Vec<u32> = of.filter(|(of, _)| **of == NONE).map(|(_, v)| v).collect();
+        for &v in &dropped {
+            self.record(Step::DropInvalid, Kind::NonFiniteVertex, Element::Vertex(v), None);
         }
-        dropped
+        dropped.len()
     }
 
     /// Takes over the valid faces and repairs them; returns the records of repairs.
@@ -179,6 +183,13 @@ impl<'s> Pool<'s> {
         control: &mut Control<'_>,
     ) -> Result<Vec<Record>, Cancelled> {
         let soup = self.soup;
+        if self.take_intact() {
+            self.report.steps.push(StepSummary::new(Step::DropInvalid, dropped_vertices));
+            return Ok(Vec::new());
+        }
+        self.polygons = Polygons::with_capacity(soup.polygons.len(), soup.polygons.corners().len());
+        self.face_source.reserve(soup.polygons.len());
+        self.corner_source.reserve(soup.polygons.corners().len());
         let mut repairs = Vec::new();
         let mut repair = PolygonRepair::default();
         let (mut welded, mut pieces) = (Vec::new(), Polygons::new());
@@ -215,6 +226,35 @@ impl<'s> Pool<'s> {
         }
         self.report.steps.push(StepSummary::new(Step::DropInvalid, dropped));
         Ok(repairs)
+    }
+
+    /// Takes over the faces as they are, if all are triangles and none needs repair: nearly all soups. Says whether it did.
+    fn take_intact(&mut self) -> bool {
+        let faces = &self.soup.polygons;
+        let corners = faces.corners();
+        if corners.len() != 3 * faces.len() || faces.iter().any(|f| f.len() != 3) {
+            return false;
+        }
+        let mut welded = Vec::with_capacity(corners.len());
+        let of = |v: u32| self.vertex_of.get(v as usize).copied().unwrap_or(NONE);
+        for face in corners.chunks_exact(3) {
+            let [a, b, c] = [of(face[0]), of(face[1]), of(face[2])];
+            if a.max(b).max(c) == NONE || a == b || b == c || c == a {
+                return false;
+            }
+            welded.extend([a, b, c]);
+        }
+        self.polygons = Polygons::with_starts(faces.starts().to_vec(), welded);
+        self.unlisted = true;
+        true
+    }
+
+    /// Writes down where faces and corners come from.
+    fn list(&mut self) {
+        if std::mem::take(&mut self.unlisted) {
+            self.corner_source = (0..self.polygons.corners().len() as u32).collect();
+            self.face_source = (0..self.polygons.len() as u32).collect();
+        }
     }
 
     pub(super) fn record(&mut self, step: Step, kind: Kind, element: Element, place: Option<DVec3>) {
@@ -258,8 +298,12 @@ impl<'s> Pool<'s> {
 
     /// The relation of the soup's faces to the pool's.
     pub(super) fn face_relation(&self) -> Relation {
-        let pairs = self.face_source.iter().zip(0..).map(|(&old, new)| (old, new));
-        Relation::from_pairs(self.soup.polygons.len(), self.face_source.len(), pairs)
+        let count = self.soup.polygons.len();
+        let all_stay = || self.face_source.iter().zip(0..).all(|(&old, new)| old == new);
+        if self.unlisted || self.face_source.len() == count && all_stay() {
+            return Relation::identity(count);
+        }
+        Relation::from_parents(count, self.face_source.clone())
     }
 
     /// Records the merges that moved a corner, in front of all records of later steps. `ended` gives the positions at
@@ -342,15 +386,10 @@ impl<'s> Pool<'s> {
 
     /// The account of a pool whose vertices stand as they were welded, at these positions.
     pub(super) fn account(&mut self, positions: &[DVec3]) -> (Report, Maps) {
-        let maps = Maps {
-            vertices: Relation::from_map(
-                &self.vertex_of.iter().map(|&v| Some(v).filter(|&v| v != NONE)).collect::<Vec<_>>(),
-                self.vertex_source.len(),
-            ),
-            faces: self.face_relation(),
-        };
         let of = std::mem::take(&mut self.vertex_of);
         self.record_merges(|v| positions.get(of[v as usize] as usize).copied());
+        let vertices = Relation::from_targets(of, self.vertex_source.len());
+        let maps = Maps { vertices, faces: self.face_relation() };
         (std::mem::take(&mut self.report), maps)
     }
 }

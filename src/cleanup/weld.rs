@@ -18,9 +18,60 @@ pub(super) fn weld(
             let own = positions.iter().zip(0..);
             Ok(own.map(|(p, i)| if p.is_finite() { i } else { NONE }).collect())
         }
-        Some(0.0) => Ok(exact(positions, control)?.unwrap_or_else(|| exact_by_sorting(positions))),
+        Some(0.0) => Ok(match exact(positions, control)? {
+            Some(welded) => welded.merged(),
+            None => exact_by_sorting(positions),
+        }),
         Some(t) if t > 0.0 && t.is_finite() => Ok(within(positions, t, control)?),
         Some(t) => Err(CleanError::BadTolerance(t)),
+    }
+}
+
+/// Vertices after a weld, numbered in the order of the lowest of those merged.
+pub(super) struct Welded {
+    /// For each vertex before, the one it is in; [`NONE`] if it is not finite.
+    pub(super) of: Vec<u32>,
+    pub(super) positions: Vec<DVec3>,
+    /// For each vertex the lowest of those merged.
+    pub(super) sources: Vec<u32>,
+}
+
+impl Welded {
+    /// As [`weld`], numbered.
+    pub(super) fn new(
+        positions: &[DVec3],
+        tolerance: Option<f64>,
+        control: &mut Control<'_>,
+    ) -> Result<Self, CleanError> {
+        if tolerance != Some(0.0) {
+            return Ok(Self::numbered(positions, weld(positions, tolerance, control)?));
+        }
+        let welded = exact(positions, control)?;
+        Ok(welded.unwrap_or_else(|| Self::numbered(positions, exact_by_sorting(positions))))
+    }
+
+    /// From what each vertex is merged into.
+    pub(super) fn numbered(positions: &[DVec3], merged_into: Vec<u32>) -> Self {
+        let mut welded = Self { of: merged_into, positions: Vec::new(), sources: Vec::new() };
+        for v in 0..welded.of.len() {
+            match welded.of[v] {
+                NONE => {}
+                kept if kept as usize == v => {
+                    welded.of[v] = welded.sources.len() as u32;
+                    welded.positions.push(positions[v]);
+                    welded.sources.push(v as u32);
+                }
+                // The kept vertex is lower, so it has its number.
+                kept => welded.of[v] = welded.of[kept as usize],
+            }
+        }
+        welded
+    }
+
+    /// What each vertex is merged into.
+    fn merged(mut self) -> Vec<u32> {
+        self.of.iter_mut().filter(|v| **v != NONE).for_each(|v| *v = self.sources[*v as usize]);
+        self.of
     }
 }
 
@@ -29,40 +80,104 @@ fn bits(p: DVec3) -> [u64; 3] {
     (p + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
-/// Open addressing in the order of vertices, so the first of equals is found by the rest. `None` if probes run long: a
-/// file made to do so must not cost quadratic time.
-fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Vec<u32>>, Cancelled> {
-    const LONGEST_PROBE: usize = 256;
-    let size = (positions.len() * 2).next_power_of_two().max(2);
-    let shift = 64 - size.trailing_zeros();
-    let mut table = vec![NONE; size];
-    let mut merged = Vec::with_capacity(positions.len());
-    for (i, &p) in positions.iter().enumerate() {
-        tick(control, i, positions.len())?;
-        if !p.is_finite() {
-            merged.push(NONE);
-            continue;
-        }
-        let mut slot = (hash(bits(p)) >> shift) as usize;
-        let mut probes = 0;
-        let kept = loop {
-            match table[slot] {
-                NONE => {
-                    table[slot] = i as u32;
-                    break i as u32;
-                }
-                // Equality of floats takes -0 for 0.
-                j if positions[j as usize] == p => break j,
-                _ if probes == LONGEST_PROBE => return Ok(None),
-                _ => {
-                    probes += 1;
-                    slot = (slot + 1) & (size - 1);
-                }
-            }
-        };
-        merged.push(kept);
+/// A hash table of kept vertices, open addressing: the vertex's number plus one, or 0 where there is none.
+struct Table {
+    slots: Vec<u32>,
+    shift: u32,
+}
+
+impl Table {
+    /// With at least so many slots.
+    fn new(slots: usize) -> Self {
+        let size = slots.next_power_of_two().max(2);
+        Self { slots: vec![0; size], shift: 64 - size.trailing_zeros() }
     }
-    Ok(Some(merged))
+
+    /// Where the search for a place begins.
+    #[inline(always)]
+    fn home(&self, p: DVec3) -> usize {
+        (hash(bits(p)) >> self.shift) as usize
+    }
+
+    /// The kept vertex at this place, or the slot for a new one, from where the search begins. `None` if it takes long.
+    fn find(&self, p: DVec3, home: usize, kept: &[DVec3]) -> Option<Result<u32, usize>> {
+        const LONGEST_PROBE: usize = 256;
+        let mask = self.slots.len() - 1;
+        let mut slot = home;
+        for _ in 0..LONGEST_PROBE {
+            match self.slots[slot & mask] {
+                0 => return Some(Err(slot & mask)),
+                // Equality of floats takes -0 for 0.
+                j if kept[j as usize - 1] == p => return Some(Ok(j - 1)),
+                _ => slot += 1,
+            }
+        }
+        None
+    }
+
+    /// Twice the size.
+    fn grow(&mut self, kept: &[DVec3]) -> Option<()> {
+        *self = Self::new(self.slots.len() * 2);
+        for (&p, number) in kept.iter().zip(1..) {
+            let slot = self.find(p, self.home(p), kept)?.err()?;
+            self.slots[slot] = number;
+        }
+        Some(())
+    }
+}
+
+/// In the order of vertices, so the first of equals is found by the rest. `None` if probes run long: a file made to do so
+/// must not cost quadratic time.
+///
+/// What is compared are the kept positions, side by side: where many share a vertex, as in a soup of triangles, they and
+/// the table are small enough for the caches. Vertices go in batches, so that the memory that all of a batch need is
+/// fetched at once; nearly all are found where their search begins.
+fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Welded>, Cancelled> {
+    const BATCH: usize = 64;
+    let mut table = Table::new((positions.len() / 2).max(4 * BATCH));
+    let mut of = Vec::with_capacity(positions.len());
+    // A closed surface has half as many vertices as triangles: room for a soup of those, of which no more is touched than
+    // is used.
+    let mut kept: Vec<DVec3> = Vec::with_capacity(positions.len() / 5);
+    let mut sources = Vec::with_capacity(positions.len() / 5);
+    let (mut homes, mut numbers) = ([0; BATCH], [NONE; BATCH]);
+    for batch in positions.chunks(BATCH) {
+        let done = of.len();
+        tick(control, done, positions.len())?;
+        if 2 * (kept.len() + BATCH) > table.slots.len() && table.grow(&kept).is_none() {
+            return Ok(None);
+        }
+        for ((&p, home), number) in batch.iter().zip(&mut homes).zip(&mut numbers) {
+            *home = table.home(p);
+            *number = table.slots[*home];
+        }
+        let last = kept.len().saturating_sub(1);
+        for (&p, number) in batch.iter().zip(&mut numbers) {
+            // Where nothing is in the slot, the last kept vertex is as good as any.
+            let j = (*number as usize).wrapping_sub(1).min(last);
+            let same = kept.get(j).is_some_and(|q| (q.x == p.x) & (q.y == p.y) & (q.z == p.z));
+            *number = if same { j as u32 } else { NONE };
+        }
+        for (i, (&p, number)) in batch.iter().zip(&mut numbers).enumerate() {
+            if *number != NONE || !p.is_finite() {
+                continue;
+            }
+            *number = match table.find(p, homes[i], &kept) {
+                Some(Ok(number)) => number,
+                Some(Err(slot)) => {
+                    kept.push(p);
+                    sources.push((done + i) as u32);
+                    table.slots[slot] = kept.len() as u32;
+                    kept.len() as u32 - 1
+                }
+                None => return Ok(None),
+            };
+        }
+        of.extend_from_slice(&numbers[..batch.len()]);
+    }
+    kept.shrink_to_fit();
+    sources.shrink_to_fit();
+    Ok(Some(Welded { of, positions: kept, sources }))
 }
 
 /// Reports now and then; the weld is the first three tenths of a clean-up.
@@ -195,9 +310,21 @@ mod tests {
 
         #[test]
         fn exact_welding_equals_the_quadratic_loop(points in lattice()) {
-            prop_assert_eq!(exact(&points, &mut Control::none()).unwrap().unwrap(), naive(&points, 0.0));
+            let welded = exact(&points, &mut Control::none()).unwrap().unwrap();
+            let again = Welded::numbered(&points, naive(&points, 0.0));
+            prop_assert_eq!((&welded.of, &welded.sources), (&again.of, &again.sources));
+            prop_assert_eq!(&welded.positions, &again.positions);
+            prop_assert_eq!(welded.merged(), naive(&points, 0.0));
             prop_assert_eq!(exact_by_sorting(&points), naive(&points, 0.0));
         }
+    }
+
+    #[test]
+    fn exact_welding_of_vertices_that_are_all_apart_keeps_them_all() {
+        let points: Vec<DVec3> = (0..5000).map(|i| DVec3::splat(f64::from(i))).collect();
+        let welded = exact(&points, &mut Control::none()).unwrap().unwrap();
+        assert_eq!(welded.positions, points);
+        assert_eq!(welded.merged(), (0..5000).collect::<Vec<u32>>());
     }
 
     #[test]

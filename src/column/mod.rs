@@ -13,15 +13,23 @@
 //! which the edge's other end was the only vertex with two values is gone. Where a collapse takes the last triangle
 //! between two seams, they become one edge, which is a seam if the values beyond them differ.
 //!
+//! Columns of **directions** say so by their rule: [`Rule::normals`], [`Rule::tangents`], or any other rule and how its
+//! values [turn](Rule::turning). [`rotate_degrees`](Mesh::rotate_degrees), the scalings and affine maps turn the values of
+//! all elements, [`reverse`](Mesh::reverse) and [`reverse_component`](Mesh::reverse_component) those of what is flipped;
+//! defaults stay as they are. Moving vertices one by one, [`deform`](Mesh::deform) and [`smooth`](Mesh::smooth) turn
+//! nothing, and a [`weld`](Mesh::weld) that has to turn a face leaves it what it holds.
+//!
 //! A mesh without columns pays one comparison for each element that an operator makes or merges.
 
 mod derive;
 mod rule;
 mod store;
+mod turn;
 
 pub(crate) use derive::{Origin, Walk};
 pub use rule::{Event, Interpolate, Rule};
 pub(crate) use store::{Columns, Dense, Kind, Store};
+pub use turn::{Direction, Turning};
 
 use crate::mesh::dead;
 use crate::{EdgeKey, FaceKey, HalfedgeKey, Mesh, VertexKey};
@@ -348,6 +356,38 @@ impl Mesh {
             Kind::Corner => 2 * self.edges.slot_count(),
             Kind::Edge => self.edges.slot_count(),
             Kind::Face => self.faces.slot_count(),
+        }
+    }
+
+    /// Turns the directions that columns hold on elements of a kind, noted for checkpoints. `slots` tells which elements,
+    /// if there are such columns.
+    pub(crate) fn turn_values(&mut self, kind: Kind, by: &Turning, slots: impl FnOnce(&Self) -> Vec<u32>) {
+        if !self.columns.each(kind).any(|(_, column)| column.turns()) {
+            return;
+        }
+        let slots = slots(self);
+        for (i, column) in self.columns.on(kind).filter(|(_, column)| column.turns()) {
+            for &slot in &slots {
+                let is_new = column.turn(slot, by, self.undo.is_some());
+                if let Some(undo) = self.undo.as_mut().filter(|_| is_new) {
+                    undo.value(kind, i, slot);
+                }
+            }
+        }
+    }
+
+    /// [`turn_values`](Self::turn_values) on all elements.
+    pub(crate) fn turn_all_values(&mut self, by: &Turning) {
+        for kind in Kind::ALL {
+            self.turn_values(kind, by, |mesh| match kind {
+                Kind::Vertex => mesh.vertices.live().collect(),
+                Kind::Edge => mesh.edges.live().collect(),
+                Kind::Face => mesh.faces.live().collect(),
+                Kind::Corner => {
+                    let sides = mesh.edges.live().flat_map(|e| [2 * e, 2 * e + 1]);
+                    sides.filter(|&h| mesh.face[h as usize] != crate::matching::NONE).collect()
+                }
+            });
         }
     }
 

@@ -1,7 +1,7 @@
 //! How columns are kept: dense, by slot, behind an object-safe face for the operators.
 
 use super::rule::How;
-use super::{Event, Rule, Value, Walk};
+use super::{Event, Rule, Turning, Value, Walk};
 use smallvec::SmallVec;
 use std::any::Any;
 
@@ -56,7 +56,7 @@ impl<T: Value> Store<T> {
 
     pub(super) fn mixed(&self, event: Event, sources: &[(u32, f64)]) -> T {
         let at = |i: usize| &self.values[sources[i].0 as usize];
-        match &self.rule.0 {
+        match &self.rule.how {
             How::Reset => self.default.clone(),
             _ if sources.is_empty() => self.default.clone(),
             How::Keep => {
@@ -64,7 +64,7 @@ impl<T: Value> Store<T> {
                     .fold(0, |best, i| if sources[i].1 > sources[best].1 { i } else { best });
                 at(heaviest).clone()
             }
-            How::Mix { mix, weighted } => {
+            How::Mix { mix, weighted, .. } => {
                 let share = 1.0 / sources.len() as f64;
                 let parts: SmallVec<[(&T, f64); 8]> = (0..sources.len())
                     .map(|i| (at(i), if *weighted { sources[i].1 } else { share }))
@@ -102,6 +102,10 @@ pub(crate) trait Dense: Send + Sync {
     fn is_same(&self, a: u32, b: u32) -> bool;
     /// Whether the rule looks at moves.
     fn sees_moves(&self) -> bool;
+    /// Whether the values are directions, which turn with space.
+    fn turns(&self) -> bool;
+    /// Turns a value; whether that changed it. What it was is put on top of the overwritten ones if it is to be remembered.
+    fn turn(&mut self, slot: u32, by: &Turning, remember: bool) -> bool;
     /// Puts the value of a slot on top of the overwritten ones.
     fn remember(&mut self, slot: u32);
     /// Takes it back.
@@ -161,6 +165,25 @@ impl<T: Value> Dense for Store<T> {
 
     fn sees_moves(&self) -> bool {
         self.rule.sees_moves()
+    }
+
+    fn turns(&self) -> bool {
+        self.rule.turn.is_some()
+    }
+
+    fn turn(&mut self, slot: u32, by: &Turning, remember: bool) -> bool {
+        let (Some(turn), Some(value)) = (&self.rule.turn, self.values.get_mut(slot as usize)) else {
+            return false;
+        };
+        let new = turn(value, by);
+        let changes = new != *value;
+        if changes {
+            let old = std::mem::replace(value, new);
+            if remember {
+                self.old.push(old);
+            }
+        }
+        changes
     }
 
     fn remember(&mut self, slot: u32) {

@@ -1,5 +1,6 @@
 //! Collapsing an edge.
 
+use super::link::HUB;
 use super::undo::Field;
 use super::{Few, Slots};
 use crate::column::{Dense, Event, Kind};
@@ -103,15 +104,25 @@ impl Mesh {
             dead_edges: Few::new(),
             dead_faces: Few::new(),
         };
+        // The open half-edge of the merged vertex, if it will have one, is that of one of the ends, or beside a triangle
+        // that goes.
+        let open = [b, a].map(|v| self.vertex_halfedge[v as usize]);
+        let is_inside = open.iter().all(|&h| !self.is_open(h));
         let moved = self.spokes(a);
         for &out in &moved {
             self.set_origin(out, b);
         }
-        self.close_side(h, b, true, &mut done);
+        let other = self.close_side(h, b, true, &mut done);
         let out = self.close_side(t, b, false, &mut done);
         done.dead_edges.push(self.drop_edge(h >> 1, None));
         self.drop_vertex(a, Some(b));
-        self.settle(b, out);
+        let is_it = |h: &u32| self.edges.is_live(h >> 1) && self.is_open(*h) && self.origin[*h as usize] == b;
+        match open.into_iter().chain([other, out]).find(is_it) {
+            Some(h) if self.vertex_halfedge[b as usize] == h => {}
+            Some(h) => self.set_vertex_halfedge(b, h),
+            None if is_inside => self.set_vertex_halfedge(b, out),
+            None => self.settle(b, out),
+        }
         self.write_position(b, position);
         done
     }
@@ -203,8 +214,17 @@ impl Mesh {
         };
         let (mut near, mut faces) = (Slots::new(), Slots::new());
         for h in self.outgoing_slots(b) {
+            if near.len() == HUB && self.shares_nothing(a, b, apex, beside) {
+                return Ok(());
+            }
             near.push(self.target_slot(h));
             faces.extend(large(h));
+        }
+        if near.len() <= HUB
+            && self.outgoing_slots(a).nth(HUB).is_some()
+            && self.shares_nothing(b, a, apex, beside)
+        {
+            return Ok(());
         }
         let is_long = near.len() > 16;
         if is_long {
@@ -224,6 +244,20 @@ impl Mesh {
             Some(f) => Err(CollapseError::CommonFace(self.faces.key(f))),
             None => Ok(()),
         }
+    }
+
+    /// Whether a vertex of few edges is quickly seen to share neither a neighbour nor a large face with a hub, but for
+    /// these: each neighbour and face is asked, not the hub. `false` says nothing.
+    fn shares_nothing(&self, v: u32, hub: u32, apex: [u32; 2], beside: [u32; 2]) -> bool {
+        let is_apart = |h: u32| {
+            let (n, f) = (self.target_slot(h), self.face[h as usize]);
+            (n == hub || apex.contains(&n) || self.find_slot(n, hub).is_none())
+                && (f == NONE
+                    || beside.contains(&f)
+                    || self.is_triangle(h)
+                    || self.loop_slots(h).all(|h| self.origin[h as usize] != hub))
+        };
+        self.outgoing_slots(v).enumerate().all(|(i, h)| i < HUB && is_apart(h))
     }
 
     /// The two faces across the other edges of the triangle at `h`, if they would have the same corners once `a` is `b`.

@@ -22,6 +22,9 @@ macro_rules! setter {
     };
 }
 
+/// A vertex of more edges than this is worth a way around.
+pub(super) const HUB: usize = 32;
+
 impl Mesh {
     setter! { write_next, next, Next }
     setter! { write_prev, prev, Prev }
@@ -236,10 +239,28 @@ impl Mesh {
         self.outgoing_slots(v).collect()
     }
 
-    /// The half-edge slot from one vertex to another.
+    /// The half-edge slot from one vertex to another. O(the lower valence).
     #[inline]
     pub(crate) fn find_slot(&self, a: u32, b: u32) -> Option<u32> {
-        self.outgoing_slots(a).find(|&h| self.origin[h as usize ^ 1] == b)
+        let mut around = self.outgoing_slots(a);
+        for _ in 0..HUB {
+            let h = around.next()?;
+            if self.target_slot(h) == b {
+                return Some(h);
+            }
+        }
+        // Around a hub the other end is asked in turns: one of the two knows soon.
+        let mut back = self.outgoing_slots(b);
+        loop {
+            let h = around.next()?;
+            if self.target_slot(h) == b {
+                return Some(h);
+            }
+            let t = back.next()?;
+            if self.target_slot(t) == a {
+                return Some(t ^ 1);
+            }
+        }
     }
 
     #[inline]

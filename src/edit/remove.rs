@@ -220,8 +220,34 @@ impl Mesh {
             let begins = |&h: &u32| is_open(h) && !is_open(self.next[h as usize ^ 1]);
             self.outgoing_slots(v).filter(begins).count()
         };
+        if let &[f] = faces {
+            // One face parts a fan unless it stands at its end, or the fan is whole.
+            let parts = |&h: &u32| {
+                let sides = [h ^ 1, self.prev[h as usize] ^ 1];
+                self.is_open_vertex(self.origin[h as usize]) && !sides.iter().any(|&h| self.is_open(h))
+            };
+            let corners = self.loop_slots(self.face_halfedge[f as usize]).filter(parts);
+            let pinched = corners.map(|h| self.origin[h as usize]).filter(|&v| Some(v) != spared).min();
+            return pinched.map(|v| self.vertices.key(v));
+        }
         let mut corners = self.corners_of(faces).into_iter().filter(|&v| Some(v) != spared);
         corners.find(|&v| fans(v) > 1).map(|v| self.vertices.key(v))
+    }
+
+    /// What will be left around each corner of a face once it is gone, in the order of slots: the vertex, and the open half-edges
+    /// into it and out of it.
+    fn opened_by(&self, f: u32) -> SmallVec<[(u32, Option<[u32; 2]>); 4]> {
+        let mut opened: SmallVec<[(u32, Option<[u32; 2]>); 4]> = SmallVec::new();
+        for h in self.loop_slots(self.face_halfedge[f as usize]) {
+            let p = self.prev[h as usize];
+            let out = if self.is_open(h ^ 1) { self.next[h as usize ^ 1] } else { h };
+            let into = if self.is_open(p ^ 1) { self.prev[p as usize ^ 1] } else { p };
+            // Both edges have this face only: then they are the vertex's only ones.
+            let is_left = out != p ^ 1;
+            opened.push((self.origin[h as usize], is_left.then_some([into, out])));
+        }
+        opened.sort_unstable();
+        opened
     }
 
     /// Removes all faces of a component, with its edges and vertices.
@@ -241,8 +267,11 @@ impl Mesh {
     /// Removes faces whose going pinches no vertex.
     fn take_faces(&mut self, faces: &[u32]) -> Removed {
         let corners = self.corners_of(faces);
-        // The edges around each corner, in order: links are written while they are still needed.
-        let fans: SmallVec<[Slots; 4]> = corners.iter().map(|&v| self.spokes(v)).collect();
+        // Found before links are written.
+        let one = if let &[f] = faces { self.opened_by(f) } else { SmallVec::new() };
+        // The edges around each corner, in order.
+        let around = if one.is_empty() { &corners[..] } else { &[] };
+        let fans: SmallVec<[Slots; 4]> = around.iter().map(|&v| self.spokes(v)).collect();
         let mut halfedges = Slots::new();
         for &f in faces {
             halfedges.extend(self.loop_slots(self.face_halfedge[f as usize]));
@@ -262,6 +291,12 @@ impl Mesh {
                 }
                 _ => self.set_vertex_halfedge(v, NONE),
             }
+        }
+        for (v, left) in one {
+            if let Some([into, out]) = left {
+                self.link(into, out);
+            }
+            self.set_vertex_halfedge(v, left.map_or(NONE, |[_, out]| out));
         }
         let mut removed = Removed::default();
         for &h in &halfedges {

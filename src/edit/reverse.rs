@@ -1,5 +1,6 @@
 //! Reversing the winding of a component, or of the whole mesh.
 
+use crate::column::{Kind, Turning};
 use crate::matching::NONE;
 use crate::{FaceKey, Mesh};
 
@@ -9,9 +10,9 @@ use crate::{FaceKey, Mesh};
 pub struct MissingFace(pub FaceKey);
 
 impl Mesh {
-    /// Flips the mesh: reverses the winding of every face and negates carried normals. Twice is the identity; all keys
-    /// stay valid, each half-edge stays with its face and now runs the other way, so that corner data moves to the
-    /// half-edge that now starts at the corner. O(slots).
+    /// Flips the mesh: reverses the winding of every face and negates normals, carried ones and those in columns of
+    /// [`Rule::normals`](crate::Rule::normals). Twice is the identity; all keys stay valid, each half-edge stays with its
+    /// face and now runs the other way, so that corner data moves to the half-edge that now starts at the corner. O(slots).
     ///
     /// # Examples
     /// ```
@@ -25,6 +26,12 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn reverse(&mut self) {
+        self.turn_all_values(&Turning::REVERSAL);
+        self.reverse_all_links();
+    }
+
+    /// Reverses the winding of every face, and turns no values.
+    pub(crate) fn reverse_all_links(&mut self) {
         let edges: Vec<u32> = self.edges.live().collect();
         let vertices: Vec<u32> = self.vertices.live().collect();
         let faces: Vec<u32> = self.faces.live().collect();
@@ -32,7 +39,7 @@ impl Mesh {
     }
 
     /// Flips one component: reverses the winding of every face that can be reached from `f` across edges, and negates
-    /// the normals that it carries. As with [`reverse`](Self::reverse) all keys stay valid. O(its size).
+    /// its normals. As with [`reverse`](Self::reverse) all keys stay valid. O(its size).
     ///
     /// ```text
     ///       c                c
@@ -73,6 +80,12 @@ impl Mesh {
                 }
             }
         }
+        self.turn_values(Kind::Vertex, &Turning::REVERSAL, |_| vertices.clone());
+        self.turn_values(Kind::Edge, &Turning::REVERSAL, |_| edges.clone());
+        self.turn_values(Kind::Face, &Turning::REVERSAL, |_| faces.clone());
+        self.turn_values(Kind::Corner, &Turning::REVERSAL, |mesh| {
+            faces.iter().flat_map(|&f| mesh.loop_slots(mesh.face_halfedge[f as usize])).collect()
+        });
         self.reverse_elements(&edges, &vertices, &faces);
         Ok(())
     }
@@ -99,7 +112,6 @@ impl Mesh {
             self.rotate_corners(self.face_halfedge[f as usize]);
             self.set_face_halfedge(f, self.prev[self.face_halfedge[f as usize] as usize]);
         }
-        self.negate_normals(vertices, faces);
         for &e in edges {
             let (h, t) = (2 * e, 2 * e + 1);
             let (a, b) = (self.origin[h as usize], self.origin[t as usize]);

@@ -59,11 +59,29 @@ pub(crate) struct Measures {
     pub(crate) centroid: Option<DVec3>,
 }
 
+/// The power of two that brings the used points to about one, and the middle of their box on that scale.
+fn frame(positions: &[DVec3], polygons: &Polygons) -> (f64, DVec3) {
+    let used = polygons.corners().iter().map(|&v| positions[v as usize]);
+    let Some(bounds) = Aabb::around(used) else { return (1.0, DVec3::ZERO) };
+    let scale = unit_scale([bounds.min, bounds.max].into_iter());
+    (scale, bounds.center() * scale)
+}
+
+/// The volume alone, to the bit that of [`measures`].
+pub(crate) fn volume(positions: &[DVec3], polygons: &Polygons) -> f64 {
+    let (scale, center) = frame(positions, polygons);
+    let mut volume = Sum::default();
+    for_each_triangle(polygons, positions, |t| {
+        let [a, b, c] = t.map(|v| positions[v as usize] * scale - center);
+        volume.add(a.dot((b - a).cross(c - a)));
+    });
+    let back = 1.0 / scale;
+    volume.value() / 6.0 * back * back * back
+}
+
 /// Area, and volume and centroid by the divergence theorem about the middle of the used points' box. O(corners).
 pub(crate) fn measures(positions: &[DVec3], polygons: &Polygons) -> Measures {
-    let used = || polygons.corners().iter().map(|&v| positions[v as usize]);
-    let scale = unit_scale(used());
-    let center = Aabb::around(used()).map_or(DVec3::ZERO, |b| b.center() * scale);
+    let (scale, center) = frame(positions, polygons);
     let (mut area, mut volume) = (Sum::default(), Sum::default());
     let mut moments = [Sum::default(); 3];
     for_each_triangle(polygons, positions, |t| {
@@ -106,6 +124,6 @@ impl crate::Topology<'_> {
     /// Pinches do no harm. Negative if the surface is inside out. O(corners).
     pub fn volume(&self) -> Option<f64> {
         (self.is_closed() && self.is_oriented())
-            .then(|| measures(self.mesh.positions(), self.mesh.polygons()).volume)
+            .then(|| volume(self.mesh.positions(), self.mesh.polygons()))
     }
 }

@@ -1,6 +1,6 @@
 //! Vertex and face normals.
 
-use super::{direction, unit_scale};
+use super::{direction, distance, unit_scale};
 use crate::mesh::read;
 use crate::{FaceKey, Mesh, Polygons, VertexKey};
 use glam::DVec3;
@@ -37,25 +37,71 @@ pub(crate) fn angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     2.0 * (u - v).length().atan2((u + v).length())
 }
 
+/// Twice the area vector of a triangle, to the bit that of its three corners as a polygon.
+fn double_area(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+    DVec3::ZERO + (b - a).cross(c - a)
+}
+
 pub(crate) fn vertex_normals(positions: &[DVec3], polygons: &Polygons, weight: NormalWeight) -> Vec<DVec3> {
-    let scale = unit_scale(positions.iter().copied());
-    let at = |v: u32| positions[v as usize] * scale;
-    let mut sums = vec![DVec3::ZERO; positions.len()];
+    let mut sums = Sums::new(positions.iter().copied(), positions.len(), weight);
     for corners in polygons.iter() {
+        sums.add(positions, corners);
+    }
+    sums.directions()
+}
+
+/// The normals of faces summed at their vertices.
+struct Sums {
+    scale: f64,
+    weight: NormalWeight,
+    sums: Vec<DVec3>,
+}
+
+impl Sums {
+    fn new(used: impl Iterator<Item = DVec3>, count: usize, weight: NormalWeight) -> Self {
+        Self { scale: unit_scale(used), weight, sums: vec![DVec3::ZERO; count] }
+    }
+
+    fn add(&mut self, positions: &[DVec3], corners: &[u32]) {
+        if let &[a, b, c] = corners {
+            let corners = [a, b, c];
+            return self.add_triangle(corners, corners.map(|v| positions[v as usize]));
+        }
+        let at = |v: u32| positions[v as usize] * self.scale;
         let area = double_area_vector(corners.iter().map(|&v| at(v)));
-        match weight {
-            NormalWeight::Area => corners.iter().for_each(|&v| sums[v as usize] += area),
+        match self.weight {
+            NormalWeight::Area => corners.iter().for_each(|&v| self.sums[v as usize] += area),
             NormalWeight::Angle => {
                 let normal = direction(area);
                 let n = corners.len();
                 for i in 0..n {
                     let (a, b, c) = (corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n]);
-                    sums[b as usize] += normal * angle(at(a), at(b), at(c));
+                    self.sums[b as usize] += normal * angle(at(a), at(b), at(c));
                 }
             }
         }
     }
-    sums.into_iter().map(direction).collect()
+
+    #[inline]
+    fn add_triangle(&mut self, corners: [u32; 3], points: [DVec3; 3]) {
+        let [a, b, c] = points.map(|p| p * self.scale);
+        let area = double_area(a, b, c);
+        let parts = match self.weight {
+            NormalWeight::Area => [area; 3],
+            NormalWeight::Angle => {
+                let normal = direction(area);
+                [angle(c, a, b), angle(a, b, c), angle(b, c, a)].map(|angle| normal * angle)
+            }
+        };
+        for (v, part) in corners.into_iter().zip(parts) {
+            self.sums[v as usize] += part;
+        }
+    }
+
+    fn directions(mut self) -> Vec<DVec3> {
+        self.sums.iter_mut().for_each(|sum| *sum = direction(*sum));
+        self.sums
+    }
 }
 
 impl Mesh {
@@ -112,13 +158,83 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn compute_normals(&mut self, weight: NormalWeight) {
-        let pool = self.to_indexed();
-        let computed = pool.vertex_normals(weight);
-        let mut column = vec![DVec3::ZERO; self.vertices.slot_count()];
-        for (slot, normal) in self.vertices.in_user_order().into_iter().zip(computed) {
-            column[slot as usize] = normal;
-        }
-        self.replace_normals(column);
+        let sums = self.normal_sums(weight, |_, _| {});
+        self.replace_normals(sums.directions());
+    }
+
+    /// As [`compute_normals`](Self::compute_normals), and gives the unit normals of all faces as
+    /// [`face_normals`](Self::face_normals) does, in one pass over the faces. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, NormalWeight, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let mut mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
+    /// assert_eq!(mesh.compute_all_normals(NormalWeight::Area), mesh.face_normals());
+    /// assert!(mesh.vertices().all(|v| mesh.normal(v) == Some(DVec3::Z)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn compute_all_normals(&mut self, weight: NormalWeight) -> Vec<DVec3> {
+        let mut at_faces = Vec::with_capacity(self.face_count());
+        let in_order = self.faces.is_in_user_order();
+        let sums = self.normal_sums(weight, |f, triangle| {
+            if in_order {
+                at_faces.push(triangle.map_or_else(|| self.normal_of_face(f), triangle_normal));
+            }
+        });
+        self.replace_normals(sums.directions());
+        if in_order { at_faces } else { self.face_normals() }
+    }
+
+    /// The normals of faces summed at vertex slots. `each` is called with every face, in the user's order, and its corners if
+    /// it is a triangle.
+    fn normal_sums(&self, weight: NormalWeight, mut each: impl FnMut(u32, Option<[DVec3; 3]>)) -> Sums {
+        let used = self.vertices.live().map(|v| self.positions[v as usize]);
+        let mut sums = Sums::new(used, self.vertices.slot_count(), weight);
+        let mut polygon = Vec::new();
+        self.for_each_in_user_order(|f| {
+            let h = self.face_halfedge[f as usize];
+            match self.triangle_slots(h) {
+                Some(halfedges) => {
+                    let corners = halfedges.map(|h| self.origin[h as usize]);
+                    let points = corners.map(|v| self.positions[v as usize]);
+                    sums.add_triangle(corners, points);
+                    each(f, Some(points));
+                }
+                None => {
+                    polygon.clear();
+                    polygon.extend(self.loop_slots(h).map(|h| self.origin[h as usize]));
+                    sums.add(&self.positions, &polygon);
+                    each(f, None);
+                }
+            }
+        });
+        sums
+    }
+
+    /// The half-edges of a triangle from one of them; `None` for other faces.
+    #[inline]
+    fn triangle_slots(&self, h: u32) -> Option<[u32; 3]> {
+        let second = self.next[h as usize];
+        let third = self.next[second as usize];
+        (self.next[third as usize] == h).then_some([h, second, third])
+    }
+
+    /// The unit normals of all faces, in the order of [`faces`](Self::faces), each as [`face_normal`](Self::face_normal)
+    /// has it. O(corners).
+    ///
+    /// # Examples
+    /// ```
+    /// # use meshwright::{IndexedMesh, Mesh, glam::DVec3};
+    /// # let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    /// # let mesh = Mesh::build(&IndexedMesh::from_triangles(points, &[[0, 1, 2]])?)?;
+    /// assert_eq!(mesh.face_normals(), [DVec3::Z]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn face_normals(&self) -> Vec<DVec3> {
+        let mut normals = Vec::with_capacity(self.face_count());
+        normals.extend(self.faces.live().map(|f| self.normal_of_face(f)));
+        normals
     }
 
     /// Where a half-edge starts.
@@ -126,27 +242,75 @@ impl Mesh {
         self.positions[self.origin[h as usize] as usize]
     }
 
+    #[inline]
     pub(crate) fn normal_of_face(&self, f: u32) -> DVec3 {
-        let first = self.corner_across_longest(self.face_halfedge[f as usize]);
-        let corners = || self.loop_slots(first).map(|h| self.at(h));
+        let h = self.face_halfedge[f as usize];
+        if let Some(halfedges) = self.triangle_slots(h) {
+            return triangle_normal(halfedges.map(|h| self.at(h)));
+        }
+        let corners = || self.loop_slots(h).map(|h| self.at(h));
         let scale = unit_scale(corners());
         direction(double_area_vector(corners().map(|p| p * scale)))
     }
+}
 
-    /// The half-edge of a triangle whose origin lies across from its longest side: of a sliver, only the product of the
-    /// two shorter sides keeps the digits of the normal. The half-edge itself on other faces.
-    fn corner_across_longest(&self, h: u32) -> u32 {
-        let [a, b, c] = [h, self.next[h as usize], self.prev[h as usize]];
-        if self.next[b as usize] != c {
-            return h;
+/// The unit normal of a triangle, from the corner across its longest side (the first of equals): of a sliver, only the
+/// product of the two shorter sides keeps the digits of the normal.
+#[inline]
+fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+    // Far from the ends of the range the squares tell, unless unequal ones have roots that may round to the same number.
+    const SAFE: std::ops::Range<f64> = 1e-200..1e200;
+    let scale = unit_scale(corners.into_iter());
+    let [a, b, c] = corners.map(|p| p * scale);
+    // Each side with the one after it, as they run into and out of the corner between them.
+    let sides = [b - a, c - b, a - c];
+    let across = [sides[1], sides[2], sides[0]].map(|side| side.length_squared());
+    let longer = |x: f64, y: f64| if y > x { y } else { x };
+    let longest = longer(longer(across[0], across[1]), across[2]);
+    let is_clear = |x: f64| SAFE.contains(&x) & ((x == longest) | (x * (1.0 + 1e-14) < longest));
+    let corner = if is_clear(across[0]) & is_clear(across[1]) & is_clear(across[2]) {
+        // Without a branch that nobody can foresee.
+        usize::from(across[0] != longest) * (1 + usize::from(across[1] != longest))
+    } else {
+        by_distance(corners)
+    };
+    // The product of the sides out of the corner, of which one is turned round twice.
+    direction(DVec3::ZERO + sides[[2, 0, 1][corner]].cross(sides[corner]))
+}
+
+/// Which corner lies across from the longest side; the first of equals. Safe for any lengths.
+#[cold]
+fn by_distance([a, b, c]: [DVec3; 3]) -> usize {
+    let across = [distance(b, c), distance(c, a), distance(a, b)];
+    (1..3).fold(0, |best, i| if across[i] > across[best] { i } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+    use proptest::prelude::*;
+
+    /// As the definition has it.
+    fn naive(corners: [DVec3; 3]) -> DVec3 {
+        let scale = unit_scale(corners.into_iter());
+        let from = by_distance(corners);
+        let turned = (0..3).map(|i| corners[(from + i) % 3] * scale);
+        direction(double_area_vector(turned))
+    }
+
+    proptest! {
+        #[test]
+        fn the_normal_of_a_triangle_is_that_of_the_polygon_from_the_corner_across_its_longest_side(
+            mut coordinates in prop::array::uniform9(prop_oneof![-1.0f64..1.0, (-2i32..3).prop_map(f64::from)]),
+            size in prop_oneof![Just(1.0), Just(1e-300), Just(1e300), Just(1e-160), Just(3e100)],
+            flat in 0usize..9,
+        ) {
+            coordinates[flat] *= 1e-9;
+            let [x, y, z, u, v, w, p, q, r] = coordinates.map(|c| c * size);
+            let corners = [dvec3(x, y, z), dvec3(u, v, w), dvec3(p, q, r)];
+            let bits = |n: DVec3| n.to_array().map(f64::to_bits);
+            prop_assert_eq!(bits(triangle_normal(corners)), bits(naive(corners)));
         }
-        let across = |h: u32| super::distance(self.at(self.next[h as usize]), self.at(self.prev[h as usize]));
-        [b, c]
-            .into_iter()
-            .fold((a, across(a)), |best, h| {
-                let length = across(h);
-                if length > best.1 { (h, length) } else { best }
-            })
-            .0
     }
 }

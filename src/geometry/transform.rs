@@ -1,9 +1,10 @@
 //! Translate, scale, rotate, and any affine map. Keys stay valid; a map that mirrors reverses the winding, so that
-//! outside stays outside.
+//! outside stays outside. Normals that the mesh carries, and columns of directions, turn along.
 
 use super::direction;
 use super::measure::Aabb;
 use super::unit_scale;
+use crate::column::Turning;
 use crate::{Mesh, SetError, VertexKey};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
@@ -39,31 +40,6 @@ impl From<SetError> for TransformError {
         match error {
             SetError::Missing(v) | SetError::NonFinite(v) => Self::OutOfRange(v),
         }
-    }
-}
-
-/// What a map does to carried normals.
-enum Turn {
-    /// They stay.
-    Keep,
-    /// They turn around.
-    Negate,
-    /// A matrix that keeps lengths.
-    Rotate(DMat3),
-    /// The inverse transpose of the map, up to a factor; lengths are kept.
-    Bend(DMat3),
-}
-
-impl Turn {
-    fn of(&self, n: DVec3) -> DVec3 {
-        let turned = match self {
-            Self::Keep => n,
-            Self::Negate => -n,
-            Self::Rotate(m) => *m * n,
-            Self::Bend(m) => direction(*m * direction(n)) * n.length(),
-        };
-        // A normal as long as the largest numbers loses its length, not its direction.
-        if turned.is_finite() { turned } else { direction(self.of(direction(n))) }
     }
 }
 
@@ -108,6 +84,12 @@ fn inverse_transpose(m: &DMat3) -> Option<(DMat3, bool)> {
     Some((DMat3::from_cols(y.cross(z) * sx, z.cross(x) * sy, x.cross(y) * sz), sign < 0.0))
 }
 
+/// What a linear map does to vectors; `None` if it is singular.
+fn affine(m: &DMat3) -> Option<Turning> {
+    let (bend, mirrors) = inverse_transpose(m)?;
+    Some(Turning::affine(*m, bend, mirrors))
+}
+
 impl Mesh {
     /// The smallest box around all vertices, isolated ones included; `None` if there are none. Its
     /// [`center`](Aabb::center) is a common origin to scale and rotate about. O(vertices).
@@ -132,11 +114,12 @@ impl Mesh {
     /// ```
     pub fn translate(&mut self, by: DVec3) -> Result<(), TransformError> {
         finite(&[by])?;
-        self.map(|p| p + by, &Turn::Keep, false)
+        self.map(|p| p + by, None)
     }
 
     /// Scales by one factor about an origin. A negative factor mirrors through the origin, and reverses the winding
-    /// with it: the volume goes with the cube of the factor's size. O(vertices), or O(elements) if it mirrors.
+    /// with it: the volume goes with the cube of the factor's size. Tangents in columns are scaled too.
+    /// O(vertices), or O(elements) if it mirrors.
     ///
     /// # Errors
     /// [`TransformError`] on a factor of zero, an argument that is not finite, a mesh without vertices, or a vertex that
@@ -159,12 +142,12 @@ impl Mesh {
         if factor == 0.0 {
             return Err(TransformError::ZeroFactor);
         }
-        let turn = if factor < 0.0 { Turn::Negate } else { Turn::Keep };
-        self.map(|p| origin + (p - origin) * factor, &turn, factor < 0.0)
+        self.map(|p| origin + (p - origin) * factor, Some(Turning::scaling(factor)))
     }
 
     /// Scales by a factor for each axis about an origin. If an odd number of them is negative, that mirrors, and the
-    /// winding reverses. Carried normals turn by the inverse transpose. O(vertices), or O(elements) if it mirrors.
+    /// winding reverses. Normals turn by the inverse transpose, tangents in columns are scaled. O(vertices), or
+    /// O(elements) if it mirrors.
     ///
     /// # Errors
     /// As [`scale`](Self::scale).
@@ -183,14 +166,13 @@ impl Mesh {
         if factors.min_element() == factors.max_element() {
             return self.scale(factors.x, origin);
         }
-        let Some((bend, mirrors)) = inverse_transpose(&DMat3::from_diagonal(factors)) else {
-            return Err(TransformError::ZeroFactor);
-        };
-        self.map(|p| origin + (p - origin) * factors, &Turn::Bend(bend), mirrors)
+        let turning = affine(&DMat3::from_diagonal(factors)).ok_or(TransformError::ZeroFactor)?;
+        self.map(|p| origin + (p - origin) * factors, Some(turning))
     }
 
     /// Rotates about an axis through an origin by an angle in degrees, counter-clockwise seen against the axis
-    /// (Rodrigues). Multiples of 90 degrees about the coordinate axes are exact. O(vertices).
+    /// (Rodrigues). Multiples of 90 degrees about the coordinate axes are exact. Normals and tangents turn along.
+    /// O(vertices).
     ///
     /// # Errors
     /// [`TransformError`] on an axis without direction, an argument that is not finite, a mesh without vertices, or a
@@ -213,11 +195,12 @@ impl Mesh {
             return Err(TransformError::ZeroAxis);
         }
         let rotation = rodrigues(axis, degrees);
-        self.map(|p| origin + rotation * (p - origin), &Turn::Rotate(rotation), false)
+        self.map(|p| origin + rotation * (p - origin), Some(Turning::rotation(rotation)))
     }
 
-    /// Applies an affine map. One that mirrors reverses the winding; carried normals turn by the inverse transpose and
-    /// keep their lengths. O(vertices), or O(elements) if it mirrors.
+    /// Applies an affine map. One that mirrors reverses the winding; normals turn by the inverse transpose and keep their
+    /// lengths, tangents in columns go through the linear part (see [`Rule::normals`](crate::Rule::normals) and
+    /// [`Rule::tangents`](crate::Rule::tangents)). O(vertices), or O(elements) if it mirrors.
     ///
     /// # Errors
     /// [`TransformError`] on a map that is singular or not finite, a mesh without vertices, or a vertex that would leave
@@ -236,8 +219,8 @@ impl Mesh {
     pub fn transform(&mut self, map: &DAffine3) -> Result<(), TransformError> {
         let linear = map.matrix3;
         finite(&[linear.x_axis, linear.y_axis, linear.z_axis, map.translation])?;
-        let (bend, mirrors) = inverse_transpose(&linear).ok_or(TransformError::Singular)?;
-        self.map(|p| map.transform_point3(p), &Turn::Bend(bend), mirrors)
+        let turning = affine(&linear).ok_or(TransformError::Singular)?;
+        self.map(|p| map.transform_point3(p), Some(turning))
     }
 
     /// [`transform`](Self::transform) by a 4x4 matrix whose last row is `0 0 0 1`.
@@ -266,20 +249,18 @@ impl Mesh {
         self.transform(&DAffine3::from_mat4(*matrix))
     }
 
-    /// Moves every vertex, turns carried normals, and reverses the winding of a map that mirrors.
-    fn map(&mut self, at: impl Fn(DVec3) -> DVec3, turn: &Turn, mirrors: bool) -> Result<(), TransformError> {
+    /// Moves every vertex, turns directions, and reverses the winding of a map that mirrors.
+    fn map(&mut self, at: impl Fn(DVec3) -> DVec3, turning: Option<Turning>) -> Result<(), TransformError> {
         if self.vertex_count() == 0 {
             return Err(TransformError::Empty);
         }
         let moved: Vec<DVec3> = self.positions.iter().map(|&p| at(p)).collect();
         self.replace_positions(moved)?;
-        if mirrors {
-            self.reverse();
-        }
-        if !matches!(turn, Turn::Keep) {
-            // The reversal has negated them.
-            let sign = if mirrors { -1.0 } else { 1.0 };
-            self.turn_normals(|n| turn.of(n * sign));
+        if let Some(turning) = turning {
+            if turning.flips() {
+                self.reverse_all_links();
+            }
+            self.turn_all_values(&turning);
         }
         Ok(())
     }

@@ -6,8 +6,8 @@ use super::error::ReadError;
 ///
 /// Readers hold the file's bytes (given by the caller) and what they return, and reserve nothing on the word of a
 /// header that the rest of the file cannot make good. Beside the file's bytes a mesh takes up to 2.5 times their number
-/// while it is read, and 6 times from OBJ; at the very worst, from files made for the purpose, that is 12 times, and 40
-/// times from OBJ (tobj's share). Measured on meshes of a million triangles and on the shortest statements there are.
+/// while it is read; at the very worst, from files made for the purpose, that is 12 times, and 24 times from OBJ (a group
+/// for every face). Measured on meshes of a million triangles and on the shortest statements there are.
 ///
 /// # Examples
 /// ```

@@ -123,8 +123,7 @@ pub fn read(bytes: &[u8], format: Format, limits: &Limits) -> Result<Loaded, Rea
     read_with(bytes, format, limits, Control::none())
 }
 
-/// As [`read`], with a progress-and-cancel hook. What tobj does with an OBJ file once it has seen all of it, about half
-/// of the work, is done in one go.
+/// As [`read`], with a progress-and-cancel hook.
 ///
 /// # Errors
 /// [`ReadError`]; when cancelled.

@@ -12,6 +12,8 @@ use std::io::Write;
 
 const HEADER: usize = 84;
 const FACET: usize = 50;
+/// Facets between two looks at the hook.
+const BLOCK: usize = 1024;
 /// Within so many bytes an ASCII file has said what it is.
 const BEGINNING: usize = 4096;
 
@@ -77,24 +79,25 @@ fn read_binary(bytes: &[u8], limits: &Limits, watch: &mut Watch<'_, '_>) -> Resu
     let count = wanted as usize;
     let mut notes = Notes::default();
     let mut positions = Vec::with_capacity(3 * count);
-    let coordinate = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    for (i, facet) in data.chunks_exact(FACET).take(count).enumerate() {
-        watch.tick(FACET * (count - i))?;
-        for corner in facet[12..48].chunks_exact(12) {
-            let p = DVec3::new(coordinate(&corner[..4]), coordinate(&corner[4..8]), coordinate(&corner[8..]));
-            if !p.is_finite() {
-                notes.add(NoteKind::NonFiniteCoordinate, Place::Byte((HEADER + FACET * i) as u64));
-            }
-            positions.push(p);
+    let (facets, _) = data.as_chunks::<FACET>();
+    for (block, facets) in facets[..count].chunks(BLOCK).enumerate() {
+        watch.ticks(facets.len(), FACET * (count - BLOCK * block))?;
+        let first = positions.len();
+        for facet in facets {
+            let (numbers, _) = facet[12..48].as_chunks();
+            let at = |i: usize| f64::from(f32::from_le_bytes(numbers[i]));
+            positions.extend([0, 3, 6].map(|i| DVec3::new(at(i), at(i + 1), at(i + 2))));
+        }
+        let odd = positions[first..].iter().enumerate().filter(|(_, p)| !p.is_finite());
+        for (i, _) in odd {
+            let byte = HEADER + FACET * (BLOCK * block + i / 3);
+            notes.add(NoteKind::NonFiniteCoordinate, Place::Byte(byte as u64));
         }
     }
     if data.len() > FACET * count {
         notes.add(NoteKind::TrailingData, Place::Byte((HEADER + FACET * count) as u64));
     }
-    let mut polygons = Polygons::with_capacity(count, 3 * count);
-    for first in (0..3 * wanted as u32).step_by(3) {
-        polygons.push([first, first + 1, first + 2]);
-    }
+    let polygons = Polygons::uniform(3, (0..3 * wanted as u32).collect());
     Ok(Loaded { soup: PolygonSoup::new(positions, polygons), notes: notes.finish() })
 }
 

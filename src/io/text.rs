@@ -14,6 +14,20 @@ impl<'a> Lines<'a> {
         Self { rest: Some(text), number: 0 }
     }
 
+    /// What is left; it begins with a line.
+    #[inline]
+    pub(super) fn rest(&self) -> Option<&'a [u8]> {
+        self.rest
+    }
+
+    /// Takes so many bytes, which are a line and its end; its number.
+    #[inline]
+    pub(super) fn take_line(&mut self, bytes: usize) -> u64 {
+        self.rest = self.rest.map(|rest| &rest[bytes..]);
+        self.number += 1;
+        self.number
+    }
+
     /// How many bytes are left.
     pub(super) fn left(&self) -> usize {
         self.rest.map_or(0, <[u8]>::len)

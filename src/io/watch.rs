@@ -11,20 +11,14 @@ pub(super) struct Watch<'w, 'a> {
     control: &'w mut Control<'a>,
     /// The bytes to read.
     bytes: usize,
-    /// The share of the whole call at which reading begins, and that at which all bytes are seen.
+    /// The share of the whole call at which reading begins.
     from: f64,
-    to: f64,
     ticks: u32,
 }
 
 impl<'w, 'a> Watch<'w, 'a> {
     pub(super) fn new(control: &'w mut Control<'a>, bytes: usize, from: f64) -> Self {
-        Self { control, bytes, from, to: 1.0, ticks: 0 }
-    }
-
-    /// Work is left once all bytes are seen: they are so much of what there is.
-    pub(super) fn leave_after_bytes(&mut self, share: f64) {
-        self.to = self.from + (1.0 - self.from) * share;
+        Self { control, bytes, from, ticks: 0 }
     }
 
     /// Notes an element, and reports about every quarter million of them how many bytes are left.
@@ -34,10 +28,17 @@ impl<'w, 'a> Watch<'w, 'a> {
         if self.ticks.is_multiple_of(EVERY) { self.report(left) } else { Ok(()) }
     }
 
+    /// Notes so many elements at once, fewer than lie between two reports.
+    pub(super) fn ticks(&mut self, count: usize, left: usize) -> Result<(), Cancelled> {
+        let before = self.ticks / EVERY;
+        self.ticks = self.ticks.wrapping_add(count as u32);
+        if self.ticks / EVERY == before { Ok(()) } else { self.report(left) }
+    }
+
     /// Reports how many bytes are left.
     pub(super) fn report(&mut self, left: usize) -> Result<(), Cancelled> {
         let share = self.bytes.saturating_sub(left) as f64 / self.bytes.max(1) as f64;
-        self.control.report("read", self.from + (self.to - self.from) * share)
+        self.control.report("read", self.from + (1.0 - self.from) * share)
     }
 
     /// Reports that all is read.

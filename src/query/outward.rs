@@ -56,8 +56,9 @@ pub struct OutwardPart<F> {
     /// it lay in none. Looked for at up to 64 vertices. Also where so many parts lie within each other, or in one place, that
     /// this part was not asked: what all rays together meet is bounded.
     pub crosses: bool,
-    /// How sure the direction is, from 0 to 1. For a closed part 1, unless it encloses no volume; for an open one twice
-    /// the mean winding number on the surface, which is 1 for a closed one and 0 for a flat sheet.
+    /// How sure the direction is, from 0 to 1. For a closed part 1, or 0 if it encloses no more volume than rounding may
+    /// make of none: then it stays as it is. For an open one twice the mean winding number on the surface, which is 1 for
+    /// a closed one and 0 for a flat sheet.
     pub confidence: f64,
     /// Whether it was reversed.
     pub reversed: bool,

@@ -1,5 +1,9 @@
 //! Relations between old and new elements.
 
+use std::fmt;
+use std::panic::{RefUnwindSafe, UnwindSafe};
+use std::sync::{Arc, OnceLock};
+
 /// Where old vertices and faces went, and where new ones come from.
 ///
 /// # Examples
@@ -51,15 +55,53 @@ pub struct MapMismatch {
 /// A many-to-many relation between old and new indices, readable both ways.
 ///
 /// An old element that was dropped has no new one; one that was split has several; a new element made from nothing
-/// has no old one. Lists are ascending. Memory: 4 bytes per pair and direction, and 4 per element where lists differ
-/// in length.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// has no old one. Lists are ascending. Each direction is made when it is first asked for, in O(pairs), unless the operation
+/// had it anyway. Memory: 4 bytes per pair and direction, and 4 per element where lists differ in length.
+#[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(into = "RelationLists"))]
 pub struct Relation {
-    forward: Lists,
-    backward: Lists,
+    old_count: usize,
+    new_count: usize,
+    /// What the lists follow from while there are none.
+    origin: Origin,
+    /// For each old element its new ones.
+    forward: OnceLock<Lists>,
+    /// For each new element its old ones: `forward` the other way round.
+    backward: OnceLock<Lists>,
 }
+
+/// Where the lists of a relation come from.
+#[derive(Clone, Default)]
+enum Origin {
+    /// One direction is there.
+    #[default]
+    Listed,
+    /// Every element stays what it is.
+    Identity,
+    /// Makes the lists of old elements.
+    Made(Arc<dyn Fn() -> Lists + Send + Sync + UnwindSafe + RefUnwindSafe>),
+}
+
+impl fmt::Debug for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Listed => "Listed",
+            Self::Identity => "Identity",
+            Self::Made(_) => "Made",
+        })
+    }
+}
+
+impl PartialEq for Relation {
+    fn eq(&self, other: &Self) -> bool {
+        self.old_count == other.old_count
+            && self.new_count == other.new_count
+            && (self.is_known_identity() && other.is_known_identity() || self.backward() == other.backward())
+    }
+}
+
+impl Eq for Relation {}
 
 /// What a relation looks like in JSON: for each old index its new ones, for each new index its old ones.
 #[cfg(feature = "serde")]
@@ -73,7 +115,7 @@ struct RelationLists {
 impl From<Relation> for RelationLists {
     fn from(r: Relation) -> Self {
         let lists = |l: &Lists| (0..l.len()).map(|i| l.get(i).to_vec()).collect();
-        Self { new_of: lists(&r.forward), old_of: lists(&r.backward) }
+        Self { new_of: lists(r.forward()), old_of: lists(r.backward()) }
     }
 }
 
@@ -119,6 +161,20 @@ impl Lists {
         Self { starts: if single { Vec::new() } else { starts }, items }
     }
 
+    /// Each its own.
+    fn each(count: usize) -> Self {
+        Self { starts: Vec::new(), items: (0..count as u32).collect() }
+    }
+
+    fn is_each(&self) -> bool {
+        self.starts.is_empty() && self.items.iter().zip(0..).all(|(&item, i)| item == i)
+    }
+
+    /// The lists of items, of which there are `count`.
+    fn turned(&self, count: usize) -> Self {
+        Self::group(count, self.pairs().map(|(list, item)| (item, list)))
+    }
+
     fn pairs(&self) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
         (0..self.len()).flat_map(move |i| self.get(i).iter().map(move |&item| (i as u32, item)))
     }
@@ -127,8 +183,7 @@ impl Lists {
 impl Relation {
     /// Every element stays what it is.
     pub fn identity(count: usize) -> Self {
-        let lists = Lists { starts: Vec::new(), items: (0..count as u32).collect() };
-        Self { forward: lists.clone(), backward: lists }
+        Self { old_count: count, new_count: count, origin: Origin::Identity, ..Self::default() }
     }
 
     /// Every old element has one new one or none. Entries at or past `new_count` count as none.
@@ -136,11 +191,8 @@ impl Relation {
         let pairs = new_of_old
             .iter()
             .enumerate()
-            .filter_map(|(old, new)| new.filter(|&n| (n as usize) < new_count).map(|n| (old as u32, n)));
-        Self {
-            forward: Lists::group(new_of_old.len(), pairs.clone()),
-            backward: Lists::group(new_count, pairs.map(|(old, new)| (new, old))),
-        }
+            .filter_map(|(old, new)| new.filter(|&n| (n as usize) < new_count).map(|n| (n, old as u32)));
+        Self::backwards(new_of_old.len(), Lists::group(new_count, pairs))
     }
 
     /// Any pairs `(old, new)`, in any order; repeats count once, pairs out of range not at all. O(n log n).
@@ -157,66 +209,102 @@ impl Relation {
             pairs.sort_unstable();
         }
         pairs.dedup();
-        Self {
-            forward: Lists::group(old_count, pairs.iter().copied()),
-            backward: Lists::group(new_count, pairs.iter().map(|&(old, new)| (new, old))),
-        }
+        Self::backwards(old_count, Lists::group(new_count, pairs.iter().map(|&(old, new)| (new, old))))
     }
 
-    /// Every new element is a part of one old one, below `old_count`. O(elements).
+    /// Every new element is a part of one old one, below `old_count`.
     pub(crate) fn from_parents(old_count: usize, parents: Vec<u32>) -> Self {
-        let forward = Lists::group(old_count, parents.iter().copied().zip(0..));
-        Self { forward, backward: Lists { starts: Vec::new(), items: parents } }
+        Self::backwards(old_count, Lists { starts: Vec::new(), items: parents })
     }
 
-    /// For each new element, in order, its old ones: ascending, without repeats, below `old_count`. O(pairs).
-    pub(crate) fn from_old_of(old_count: usize, starts: Vec<u32>, items: Vec<u32>) -> Self {
-        let count = starts.len().saturating_sub(1);
-        let single = items.len() == count && starts.iter().zip(0u32..).all(|(&s, i)| s == i);
-        let mut forward = vec![0u32; old_count + 1];
-        items.iter().for_each(|&old| forward[old as usize + 1] += 1);
-        let is_single = forward[1..].iter().all(|&n| n == 1);
-        (0..old_count).for_each(|i| forward[i + 1] += forward[i]);
-        let mut list = vec![0u32; items.len()];
-        let mut at = forward.clone();
-        for (range, new) in starts.windows(2).zip(0..) {
-            for &old in &items[range[0] as usize..range[1] as usize] {
-                let slot = &mut at[old as usize];
-                list[*slot as usize] = new;
-                *slot += 1;
+    /// Every old element has one new one, below `new_count`, or none where the entry is `u32::MAX`.
+    pub(crate) fn from_targets(targets: Vec<u32>, new_count: usize) -> Self {
+        let lists = if targets.contains(&u32::MAX) {
+            let mut starts = Vec::with_capacity(targets.len() + 1);
+            let mut items = Vec::with_capacity(targets.len());
+            starts.push(0);
+            for new in targets {
+                items.extend(Some(new).filter(|&n| n != u32::MAX));
+                starts.push(items.len() as u32);
             }
-        }
-        Self {
-            forward: Lists { starts: if is_single { Vec::new() } else { forward }, items: list },
-            backward: Lists { starts: if single { Vec::new() } else { starts }, items },
-        }
+            Lists { starts, items }
+        } else {
+            Lists { starts: Vec::new(), items: targets }
+        };
+        let forward = OnceLock::from(lists);
+        let old_count = forward.get().map_or(0, Lists::len);
+        Self { old_count, new_count, forward, ..Self::default() }
+    }
+
+    /// For each new element, in order, its old ones: ascending, without repeats, below `old_count`; told when somebody
+    /// asks.
+    pub(crate) fn made(
+        old_count: usize,
+        new_count: usize,
+        tell: impl Fn(&mut OldOf) + Send + Sync + UnwindSafe + RefUnwindSafe + 'static,
+    ) -> Self {
+        let make = move || {
+            let mut told = OldOf { starts: Vec::with_capacity(new_count + 1), items: Vec::new() };
+            told.starts.push(0);
+            tell(&mut told);
+            let OldOf { starts, items } = told;
+            debug_assert_eq!(starts.len(), new_count + 1);
+            let single = items.len() == new_count && starts.iter().zip(0u32..).all(|(&s, i)| s == i);
+            Lists { starts: if single { Vec::new() } else { starts }, items }
+        };
+        Self { old_count, new_count, origin: Origin::Made(Arc::new(make)), ..Self::default() }
+    }
+
+    fn backwards(old_count: usize, backward: Lists) -> Self {
+        let new_count = backward.len();
+        Self { old_count, new_count, backward: OnceLock::from(backward), ..Self::default() }
+    }
+
+    fn forward(&self) -> &Lists {
+        self.forward.get_or_init(|| match &self.origin {
+            Origin::Identity => Lists::each(self.old_count),
+            _ => self.backward().turned(self.old_count),
+        })
+    }
+
+    fn backward(&self) -> &Lists {
+        self.backward.get_or_init(|| match (&self.origin, self.forward.get()) {
+            (Origin::Identity, _) => Lists::each(self.new_count),
+            (Origin::Made(make), _) => make(),
+            (Origin::Listed, Some(forward)) => forward.turned(self.new_count),
+            // No element at all: the default.
+            (Origin::Listed, None) => Lists::default(),
+        })
+    }
+
+    fn is_known_identity(&self) -> bool {
+        matches!(self.origin, Origin::Identity)
     }
 
     /// The number of old elements.
     pub fn old_len(&self) -> usize {
-        self.forward.len()
+        self.old_count
     }
 
     /// The number of new elements.
     pub fn new_len(&self) -> usize {
-        self.backward.len()
+        self.new_count
     }
 
-    /// The new elements that old element `i` became, ascending; none if it was dropped or never was.
+    /// The new elements that old element `i` became, ascending; none if it was dropped or never was. The first call may
+    /// take O(pairs).
     pub fn new_of(&self, i: usize) -> &[u32] {
-        self.forward.get(i)
+        self.forward().get(i)
     }
 
-    /// The old elements that new element `i` was made from, ascending.
+    /// The old elements that new element `i` was made from, ascending. The first call may take O(pairs).
     pub fn old_of(&self, i: usize) -> &[u32] {
-        self.backward.get(i)
+        self.backward().get(i)
     }
 
     /// Whether every element stays what it is.
     pub fn is_identity(&self) -> bool {
-        self.forward.starts.is_empty()
-            && self.backward.starts.is_empty()
-            && self.forward.items.iter().enumerate().all(|(i, &n)| n as usize == i)
+        self.is_known_identity() || self.old_count == self.new_count && self.backward().is_each()
     }
 
     /// This relation followed by `next`.
@@ -227,25 +315,56 @@ impl Relation {
         if self.new_len() != next.old_len() {
             return Err(MapMismatch { first: self.new_len(), second: next.old_len() });
         }
+        if self.is_known_identity() {
+            return Ok(next.clone());
+        }
+        if next.is_known_identity() {
+            return Ok(self.clone());
+        }
         let pairs = self
-            .forward
+            .forward()
             .pairs()
             .flat_map(|(old, mid)| next.new_of(mid as usize).iter().map(move |&new| (old, new)));
         Ok(Self::from_pairs(self.old_len(), next.new_len(), pairs))
     }
 
     /// The same with new elements added at the end that come from nothing.
-    pub(crate) fn widened(mut self, new_len: usize) -> Self {
-        if new_len > self.new_len() {
-            let pairs: Vec<_> = self.backward.pairs().collect();
-            self.backward = Lists::group(new_len, pairs.into_iter());
+    pub(crate) fn widened(self, new_len: usize) -> Self {
+        if new_len <= self.new_len() {
+            return self;
         }
-        self
+        let backward = Lists::group(new_len, self.backward().pairs());
+        Self::backwards(self.old_count, backward)
     }
 
     /// The relation read backwards.
     pub fn inverse(&self) -> Self {
-        Self { forward: self.backward.clone(), backward: self.forward.clone() }
+        if self.is_known_identity() {
+            return self.clone();
+        }
+        Self {
+            old_count: self.new_count,
+            new_count: self.old_count,
+            origin: Origin::Listed,
+            forward: OnceLock::from(self.backward().clone()),
+            backward: self.forward.clone(),
+        }
+    }
+}
+
+/// What each new element was made of, told in order.
+pub(crate) struct OldOf {
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl OldOf {
+    /// The next new element's old ones: any order, no repeats.
+    pub(crate) fn add(&mut self, old: impl IntoIterator<Item = u32>) {
+        let first = self.items.len();
+        self.items.extend(old);
+        self.items[first..].sort_unstable();
+        self.starts.push(self.items.len() as u32);
     }
 }
 

@@ -4,6 +4,7 @@ mod kinds;
 mod maps;
 
 pub use kinds::{Attribute, Kind, LossReason, Step};
+pub(crate) use maps::OldOf;
 pub use maps::{MapMismatch, Maps, Relation};
 
 use glam::DVec3;

@@ -5,6 +5,7 @@ mod drive;
 mod obj;
 mod off;
 mod ply;
+mod records;
 #[path = "../shapes/mod.rs"]
 mod shapes;
 mod stl;

@@ -8,6 +8,7 @@ mod collapse;
 mod dissolve;
 mod fill;
 mod flip;
+mod hub;
 mod join;
 mod poke;
 mod remove;
@@ -19,7 +20,7 @@ mod stitch;
 mod triangulate;
 
 use meshwright::glam::{DVec3, dvec3};
-use meshwright::{EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, Numbering, VertexKey};
+use meshwright::{CollapseError, EdgeKey, FaceKey, HalfedgeKey, IndexedMesh, Mesh, Numbering, VertexKey};
 
 /// A mesh with the numbers its elements were built under.
 struct Subject {

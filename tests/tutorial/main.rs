@@ -10,6 +10,13 @@ mod agree;
 mod agree_edges;
 mod cancel;
 mod cases;
+mod corpus_closest;
+mod corpus_cross;
+mod corpus_edges;
+mod corpus_made;
+mod corpus_moved;
+mod corpus_rays;
+mod corpus_smooth;
 mod cross;
 mod forms;
 mod naive;
@@ -22,6 +29,7 @@ use meshwright::cleanup::{CleanOptions, Weld, clean, index};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{IndexedMesh, Mesh, PolygonSoup};
 use naive::Plain;
+use std::sync::OnceLock;
 
 /// Named shapes that are manifolds: closed and open, of triangles and of polygons, of one part and of two.
 fn manifolds() -> Vec<(String, IndexedMesh)> {
@@ -60,6 +68,28 @@ fn models(most_faces: usize) -> Vec<(String, Mesh)> {
         (mesh.face_count() > 0).then_some((name, mesh))
     };
     soups(most_faces).into_iter().filter_map(small).collect()
+}
+
+/// [`models`] of up to 1000 faces, cleaned once for all tests.
+fn few() -> &'static [(String, Mesh)] {
+    static FEW: OnceLock<Vec<(String, Mesh)>> = OnceLock::new();
+    FEW.get_or_init(|| models(1000))
+}
+
+/// Those of them that are closed, of triangles.
+fn solids() -> impl Iterator<Item = &'static (String, Mesh)> {
+    few().iter().filter(|(_, mesh)| mesh.is_closed() && mesh.faces().all(|f| mesh.degree(f) == 3))
+}
+
+/// Fails where a test that needs the corpus met too little of it.
+fn assert_met(met: usize, least: usize) {
+    assert!(met >= least || std::env::var_os("MESHWRIGHT_CORPUS").is_none(), "only {met}, not {least}");
+}
+
+/// From the middle to a corner, and how far out that is.
+fn reach(mesh: &Mesh) -> (f64, f64) {
+    let bounds = mesh.bounds().expect("vertices");
+    ((bounds.max - bounds.min).length(), bounds.max.abs().max(bounds.min.abs()).max_element())
 }
 
 /// Small files of the corpus as they are.

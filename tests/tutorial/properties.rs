@@ -1,7 +1,7 @@
 //! Properties of the operations on shapes and on models of the corpus.
 
 use crate::shapes::{self, Noise};
-use crate::{cut, manifolds, models, somewhere, volume};
+use crate::{cut, manifolds, models, reach, somewhere, volume};
 use meshwright::glam::{DVec3, dvec3};
 use meshwright::{
     ClosestOptions, Mesh, OutwardOptions, Scheme, SubdivideError, SubdivideOptions, WeldOptions,
@@ -16,12 +16,6 @@ fn subjects(most_faces: usize) -> Vec<(String, Mesh)> {
 fn apart(a: &Mesh, b: &Mesh) -> f64 {
     let far = a.vertices().zip(b.vertices()).map(|(v, w)| a.position(v).distance(b.position(w)));
     far.fold(0.0, f64::max)
-}
-
-/// From the middle to a corner, and how far out that is.
-fn reach(mesh: &Mesh) -> (f64, f64) {
-    let bounds = mesh.bounds().expect("vertices");
-    ((bounds.max - bounds.min).length(), bounds.max.abs().max(bounds.min.abs()).max_element())
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod corpus;
 mod shapes;
 
 mod columns;
+mod directions;
 mod linear;
 mod rules;
 mod seams;

@@ -36,7 +36,8 @@ pub enum ReduceTarget {
     Ratio(f64),
     /// As far as no vertex gets further than this from the planes of the original faces it stands for, and along feature
     /// edges from those that stand upright on them: in the root of the mean square over their areas, as a length in the
-    /// units of the mesh. No bound on the distance between the surfaces, but close to what that is on average.
+    /// units of the mesh. No bound on the distance between the surfaces, but close to what that is on average: on real
+    /// models single vertices came to lie up to six times as far off the surface, and twice as far off a curved rim.
     MaxError(f64),
 }
 

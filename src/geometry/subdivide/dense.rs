@@ -67,19 +67,27 @@ impl Prepared {
 impl Dense {
     /// A mesh in the user's order, its edges numbered as faces first use them.
     pub(super) fn of(mesh: &Mesh) -> Self {
+        if mesh.vertices.is_compact() {
+            return Self::numbered(mesh, mesh.positions[1..].to_vec(), |slot| slot - 1);
+        }
         let order = mesh.vertices.in_user_order();
         let mut number = vec![0u32; mesh.vertices.slot_count()];
         order.iter().zip(0..).for_each(|(&v, i)| number[v as usize] = i);
+        let positions = order.iter().map(|&v| mesh.positions[v as usize]).collect();
+        Self::numbered(mesh, positions, |slot| number[slot as usize])
+    }
+
+    fn numbered(mesh: &Mesh, positions: Vec<DVec3>, number: impl Fn(u32) -> u32) -> Self {
         let mut edge_number = vec![NONE; mesh.edges.slot_count()];
-        let mut corners = Vec::with_capacity(2 * mesh.edge_count());
-        let mut use_of = Vec::with_capacity(2 * mesh.edge_count());
-        let mut polygons = Polygons::with_capacity(mesh.face_count(), 2 * mesh.edge_count());
+        let most = 2 * mesh.edge_count();
+        let (mut corners, mut use_of) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        let mut starts = Vec::with_capacity(mesh.face_count() + 1);
+        starts.push(0);
         let mut open = Vec::new();
         let mut edges = 0;
-        for f in mesh.faces.in_user_order() {
-            corners.clear();
+        mesh.for_each_in_user_order(|f| {
             for h in mesh.loop_slots(mesh.face_halfedge[f as usize]) {
-                corners.push(number[mesh.origin[h as usize] as usize]);
+                corners.push(number(mesh.origin[h as usize]));
                 let edge = &mut edge_number[h as usize >> 1];
                 let second = *edge != NONE;
                 if !second {
@@ -91,9 +99,9 @@ impl Dense {
                 }
                 use_of.push(*edge << 1 | u32::from(second));
             }
-            polygons.push(corners.iter().copied());
-        }
-        let positions = order.iter().map(|&v| mesh.positions[v as usize]).collect();
+            starts.push(corners.len());
+        });
+        let polygons = Polygons::with_starts(starts, corners);
         let (creases, corners) = (Vec::new(), Vec::new());
         Self { positions, polygons, use_of, edges: edges as usize, open, creases, corners }
     }

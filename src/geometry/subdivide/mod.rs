@@ -228,10 +228,7 @@ impl Mesh {
             let changed = if levels > 0 { dense.polygons.len() } else { 0 };
             let (mut value, maps) = if scheme == Scheme::Sqrt3 {
                 let source = prepared.face_source;
-                let (dense, maps) =
-                    sqrt3::subdivide(dense, source, self, levels, &mut columns, &mut control)?;
-                control.report("build", 0.9)?;
-                (build(dense)?, maps)
+                sqrt3::subdivide(dense, source, self, levels, &mut columns, &mut control)?
             } else {
                 let mut refined = Refined::new(dense, prepared.face_source, self);
                 let share =

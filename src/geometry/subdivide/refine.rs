@@ -6,10 +6,11 @@ use super::{Meter, Scheme, SubdivideError, carry, masks};
 use crate::build::Linking;
 use crate::column::Columns;
 use crate::matching::NONE;
-use crate::report::{Maps, Relation};
+use crate::report::{Maps, OldOf, Relation};
 use crate::{IndexedMesh, Mesh, Polygons};
 use glam::DVec3;
 use std::mem;
+use std::sync::Arc;
 
 /// The old element on which a new vertex or edge lies: an old edge or face.
 #[derive(Clone, Copy)]
@@ -184,41 +185,41 @@ impl Refined {
                 Mesh::build(&pool).map_err(SubdivideError::Bug)?
             }
         };
-        Ok((value, self.maps(scheme, mesh)))
+        let (vertices, faces) = (value.vertex_count(), value.face_count());
+        Ok((value, self.maps(scheme, mesh, vertices, faces)))
     }
 
-    /// Where the elements of the level after this come from.
-    fn maps(mut self, scheme: Scheme, mesh: &Mesh) -> Maps {
-        let parent = self.parents(scheme);
-        let faces = Relation::from_parents(self.old_faces, parent);
-        let mut births = mem::take(&mut self.vertex_birth);
-        let dense = self.first.as_ref().unwrap_or(&self.dense);
+    /// Where the elements of the level after this come from; told when somebody asks.
+    fn maps(mut self, scheme: Scheme, mesh: &Mesh, vertices: usize, faces: usize) -> Maps {
         let cut = self.is_cut.then(|| mesh.to_indexed().into_parts().1);
-        let old = cut.as_ref().unwrap_or(&dense.polygons);
-        let ends = dense.ends_of_edges();
-        let count = self.old_vertices + births.len() + self.dense.edges;
-        let mut starts = Vec::with_capacity(count + 1);
-        let mut items: Vec<u32> = Vec::with_capacity(2 * count);
-        starts.push(0);
-        for v in 0..self.old_vertices as u32 {
-            items.push(v);
-            starts.push(items.len() as u32);
+        self.dense.positions = Vec::new();
+        if let Some(first) = &mut self.first {
+            first.positions = Vec::new();
         }
-        let mut add = |birth: Birth| {
-            match birth {
-                Birth::Edge(e) => {
-                    let [a, b] = ends[e as usize];
-                    items.extend([a.min(b), a.max(b)]);
-                }
-                Birth::Face(f) => {
-                    let first = items.len();
-                    items.extend_from_slice(&old[f as usize]);
-                    items[first..].sort_unstable();
-                }
-            }
-            starts.push(items.len() as u32);
+        let (old_vertices, old_faces) = (self.old_vertices, self.old_faces);
+        let levels = Arc::new(self);
+        let same = Arc::clone(&levels);
+        Maps {
+            vertices: Relation::made(old_vertices, vertices, move |told| {
+                levels.tell_vertices(scheme, cut.as_ref(), told);
+            }),
+            faces: Relation::made(old_faces, faces, move |told| {
+                same.parents(scheme).into_iter().for_each(|old| told.add([old]));
+            }),
+        }
+    }
+
+    /// The old vertices that each vertex of the level after this lies between.
+    fn tell_vertices(&self, scheme: Scheme, cut: Option<&Polygons>, told: &mut OldOf) {
+        let dense = self.first.as_ref().unwrap_or(&self.dense);
+        let old = cut.unwrap_or(&dense.polygons);
+        let ends = dense.ends_of_edges();
+        (0..self.old_vertices as u32).for_each(|v| told.add([v]));
+        let mut add = |birth: Birth| match birth {
+            Birth::Edge(e) => told.add(ends[e as usize]),
+            Birth::Face(f) => told.add(old[f as usize].iter().copied()),
         };
-        births.drain(..).for_each(&mut add);
+        self.vertex_birth.iter().for_each(|&birth| add(birth));
         if self.edge_birth.is_empty() {
             (0..self.dense.edges as u32).for_each(|e| add(Birth::Edge(e)));
         } else {
@@ -229,7 +230,6 @@ impl Refined {
                 add(Birth::Face(f));
             }
         }
-        Maps { vertices: Relation::from_old_of(self.old_vertices, starts, items), faces }
     }
 
     /// The mesh as it is, in triangles if it was cut into them, and where its faces come from.
@@ -245,7 +245,7 @@ fn has_center(scheme: Scheme, corners: usize) -> bool {
 }
 
 /// Who takes the finer faces: vertices, and for each corner its use of an edge.
-trait Sink {
+pub(super) trait Sink {
     fn face(&mut self, corners: &[u32], uses: &[u32]);
 }
 
@@ -257,7 +257,7 @@ impl Sink for Linking {
 }
 
 /// Faces for the next level.
-struct Lists {
+pub(super) struct Lists {
     corners: Vec<u32>,
     use_of: Vec<u32>,
     /// Empty where all have one degree.
@@ -278,7 +278,13 @@ impl Lists {
         Self { corners, use_of, starts: vec![0], degree }
     }
 
-    fn finish(self) -> (Polygons, Vec<u32>) {
+    /// For `faces` triangles.
+    pub(super) fn of_triangles(faces: usize) -> Self {
+        let (corners, use_of) = (Vec::with_capacity(3 * faces), Vec::with_capacity(3 * faces));
+        Self { corners, use_of, starts: vec![0], degree: Some(3) }
+    }
+
+    pub(super) fn finish(self) -> (Polygons, Vec<u32>) {
         let polygons = match self.degree {
             Some(degree) => Polygons::uniform(degree, self.corners),
             None => Polygons::with_starts(self.starts, self.corners),

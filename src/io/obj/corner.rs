@@ -2,7 +2,7 @@
 
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::text::{integer, is_blank, is_integer, shown};
-use crate::CornerData;
+use crate::{CornerData, PolygonSoup};
 
 /// An index as the file spells it: from 1, or from the end of what was read so far if negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,16 @@ pub(super) struct Corner {
     pub(super) normal: Index,
 }
 
+impl Corner {
+    pub(super) const NONE: Self = Self { vertex: Index::Missing, uv: Index::Missing, normal: Index::Missing };
+
+    /// The vertex, if so many were read before; the index that names none if it cannot be one.
+    #[inline]
+    pub(super) fn vertex_of(&self, so_far: usize) -> u32 {
+        self.vertex.resolve(so_far).unwrap_or(PolygonSoup::NO_VERTEX)
+    }
+}
+
 /// Reads the corner that begins at `at`, and moves `at` behind it.
 ///
 /// # Errors
@@ -62,9 +72,10 @@ pub(super) fn read(text: &[u8], at: &mut usize, line: u64) -> Result<Corner, Rea
 }
 
 /// Nearly all corners, in one look at each byte; `None` for whatever is odd.
-fn read_plain(text: &[u8], at: &mut usize) -> Option<Corner> {
+#[inline]
+pub(super) fn read_plain(text: &[u8], at: &mut usize) -> Option<Corner> {
     let vertex = digits(text, at)?;
-    let mut corner = Corner { vertex, uv: Index::Missing, normal: Index::Missing };
+    let mut corner = Corner { vertex, ..Corner::NONE };
     if text.get(*at) == Some(&b'/') {
         *at += 1;
         corner.uv = digits(text, at).unwrap_or(Index::Missing);
@@ -76,6 +87,7 @@ fn read_plain(text: &[u8], at: &mut usize) -> Option<Corner> {
     text.get(*at).is_none_or(|&b| is_blank(b)).then_some(corner)
 }
 
+#[inline]
 fn digits(text: &[u8], at: &mut usize) -> Option<Index> {
     // As many as always fit.
     const MOST: usize = 18;
@@ -108,6 +120,7 @@ pub(super) struct Attribute<T> {
 
 impl<T> Attribute<T> {
     /// Whether a corner referred to a value so far.
+    #[inline]
     pub(super) fn is_used(&self) -> bool {
         self.is_used
     }

@@ -1,63 +1,67 @@
-//! The filter in front of tobj: it reads every statement, keeps what tobj would lose, and passes on what tobj does well.
+//! The filter in front of tobj: it reads every statement but for the digits of coordinates, which go to tobj.
 
 use super::super::Limits;
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::text::{is_blank, number, number_at, words};
 use super::super::watch::Watch;
-use super::corner::{self, Attribute, Index};
+use super::coordinates::{Coordinates, Unread};
+use super::corner::{self, Attribute, Corner, Index};
 use super::statement::Statements;
-use crate::{CornerData, Group, PolygonSoup, Polygons};
+use crate::{Group, PolygonSoup, Polygons};
 use glam::DVec3;
-use std::io::{BufRead, Read, Write};
+use std::io::Write;
 
-/// tobj takes a polygon of fewer corners for a point or a line; so there are at least so many vertices in its text.
-pub(super) const FEWEST: usize = 3;
-
-/// What the filter kept.
-pub(super) struct Kept {
-    pub(super) vertices: usize,
-    pub(super) faces: usize,
-    pub(super) held: Held,
-    pub(super) colors: Vec<[f32; 4]>,
-    pub(super) corner_normals: Option<CornerData<DVec3>>,
-    pub(super) corner_uvs: Option<CornerData<[f64; 2]>>,
-    pub(super) groups: Vec<Group>,
-    pub(super) material_files: Vec<String>,
-    pub(super) notes: Notes,
-    /// Statements of a kind that occurs in OBJ files.
-    pub(super) statements: u64,
+/// Reads a whole text: what it says, notes, and how many statements of a kind that occurs in OBJ files there were.
+///
+/// # Errors
+/// What is wrong, and the line before which coordinates were passed on but perhaps not read yet.
+pub(super) fn read(
+    text: &[u8],
+    limits: &Limits,
+    watch: &mut Watch<'_, '_>,
+) -> Result<(PolygonSoup, Notes, u64), (u64, ReadError)> {
+    let mut filter =
+        Filter { text, statements: Statements::new(text), limits: *limits, seen: Seen::default() };
+    let mut line = 0;
+    let result = loop {
+        if let Err(error) = watch.tick(filter.statements.left()) {
+            break Err(error.into());
+        }
+        let read = match filter.plain_statement() {
+            Some((number, read)) => {
+                line = number;
+                read
+            }
+            None => {
+                let Some((number, statement)) = filter.statements.next() else { break Ok(()) };
+                line = number;
+                filter.statement(line, &statement)
+            }
+        };
+        if let Err(error) = read {
+            break Err(error);
+        }
+    };
+    match result {
+        Ok(()) => filter.seen.finish(text).map_err(|error| (u64::MAX, error)),
+        Err(error) => Err((line, error)),
+    }
 }
 
-/// Faces that were not passed on: short ones, and those that name vertices which were not there yet.
-#[derive(Default)]
-pub(super) struct Held {
-    /// Their numbers and lines.
-    pub(super) faces: Vec<(usize, u64)>,
-    pub(super) polygons: Polygons,
-}
-
-/// A reader of plain OBJ text over the file's text.
-pub(super) struct Filter<'a, 'w, 'c> {
-    watch: &'a mut Watch<'w, 'c>,
+/// A reader of statements.
+struct Filter<'a> {
     text: &'a [u8],
     statements: Statements<'a>,
     limits: Limits,
-    /// Plain text not yet read.
-    plain: Vec<u8>,
-    at: usize,
-    is_ended: bool,
-    error: Option<(u64, ReadError)>,
     seen: Seen,
 }
 
 /// What was read so far.
 #[derive(Default)]
 struct Seen {
-    vertices: usize,
-    faces: usize,
-    corners: usize,
+    coordinates: Coordinates,
+    polygons: Polygons,
     statements: u64,
-    held: Held,
     colors: Vec<[f32; 4]>,
     /// Vertices without a colour, and the line of the first.
     uncolored: usize,
@@ -69,95 +73,61 @@ struct Seen {
     /// Bytes of names that were copied from one group to the next.
     inherited: usize,
     notes: Notes,
-    /// Scratch for one face.
+    /// Scratch: coordinates in a spelling of ours, and a face.
+    spelled: Vec<u8>,
     face: Vec<u32>,
 }
 
-impl<'a, 'w, 'c> Filter<'a, 'w, 'c> {
-    pub(super) fn new(text: &'a [u8], limits: Limits, watch: &'a mut Watch<'w, 'c>) -> Self {
-        Self {
-            watch,
-            text,
-            statements: Statements::new(text),
-            limits,
-            plain: Vec::new(),
-            at: 0,
-            is_ended: false,
-            error: None,
-            seen: Seen::default(),
+/// Corners of a face that is read in one look.
+const FEW: usize = 4;
+
+impl Filter<'_> {
+    /// Reads a statement that is nothing but three coordinates or a few corners and ends its line, as nearly all are: one
+    /// look at each byte. With its line; `None`, and nothing done, for all others.
+    #[inline]
+    fn plain_statement(&mut self) -> Option<(u64, Result<(), ReadError>)> {
+        let rest = self.statements.rest()?;
+        match rest {
+            [b'v', b' ', coordinates @ ..] => {
+                let end = plain_coordinates(coordinates)?;
+                let bytes = 2 + end + end_of_line(&coordinates[end..])?;
+                let line = self.statements.take_line(bytes);
+                self.seen.statements += 1;
+                Some((line, self.vertex(line, &rest[1..2 + end], &[])))
+            }
+            [b'f', b' ', ..] => {
+                let mut corners = [Corner::NONE; FEW];
+                let (mut at, mut count) = (2, 0);
+                let end = loop {
+                    while rest.get(at) == Some(&b' ') {
+                        at += 1;
+                    }
+                    if let Some(end) = end_of_line(&rest[at..]) {
+                        break at + end;
+                    }
+                    let corner = corner::read_plain(rest, &mut at)?;
+                    *corners.get_mut(count)? = corner;
+                    count += 1;
+                };
+                let line = self.statements.take_line(end);
+                self.seen.statements += 1;
+                Some((line, self.plain_face(line, &corners[..count])))
+            }
+            _ => None,
         }
     }
 
-    /// What was kept, once tobj has read to the end.
-    ///
-    /// # Errors
-    /// What was wrong with the file, with the line.
-    pub(super) fn finish(self) -> Result<Kept, (u64, ReadError)> {
-        if let Some(error) = self.error {
-            return Err(error);
+    fn plain_face(&mut self, line: u64, corners: &[Corner]) -> Result<(), ReadError> {
+        let seen = &mut self.seen;
+        let before = seen.polygons.corners().len();
+        self.limits.check_faces(seen.polygons.len() as u64 + 1)?;
+        self.limits.check_corners((before + corners.len()) as u64)?;
+        for (corner, before) in corners.iter().zip(before..) {
+            seen.take_attributes(corner, before, line);
         }
-        let text = self.text;
-        let mut seen = self.seen;
-        if !seen.colors.is_empty() {
-            seen.colors.resize(seen.vertices, [1.0; 4]);
-            for _ in 0..seen.uncolored {
-                seen.notes.add(NoteKind::MissingColor, Place::Line(seen.first_uncolored));
-            }
-        }
-        seen.end_group();
-        for (face, (_, line)) in seen.held.polygons.iter().zip(&seen.held.faces) {
-            for _ in face.iter().filter(|&&v| v as usize >= seen.vertices) {
-                seen.notes.add(NoteKind::IndexOutOfRange, Place::Line(*line));
-            }
-        }
-        let line_of = |corner| line_of_corner(text, corner);
-        let corner_normals = seen.normals.finish(&mut seen.notes, line_of);
-        let corner_uvs = seen.uvs.finish(&mut seen.notes, line_of);
-        Ok(Kept {
-            vertices: seen.vertices,
-            faces: seen.faces,
-            held: seen.held,
-            colors: seen.colors,
-            corner_normals,
-            corner_uvs,
-            groups: seen.groups,
-            material_files: seen.material_files,
-            notes: seen.notes,
-            statements: seen.statements,
-        })
-    }
-
-    /// Reads statements until there is plain text to pass on.
-    fn fill(&mut self) {
-        const ENOUGH: usize = 1 << 16;
-        self.plain.clear();
-        self.at = 0;
-        while self.plain.len() < ENOUGH && !self.is_ended {
-            let Some((line, statement)) = self.statements.next() else {
-                self.is_ended = true;
-                self.end();
-                return;
-            };
-            let watched = self.watch.tick(self.statements.left()).map_err(ReadError::from);
-            if let Err(error) = watched.and_then(|()| self.statement(line, &statement)) {
-                self.error = Some((line, error));
-                self.is_ended = true;
-                self.plain.clear();
-            }
-        }
-    }
-
-    /// At the end: the polygon through all vertices in order, which says what number tobj gave to each.
-    fn end(&mut self) {
-        let vertices = self.seen.vertices;
-        for _ in vertices..FEWEST {
-            self.plain.extend_from_slice(b"v 0 0 0\n");
-        }
-        self.plain.push(b'f');
-        for i in 1..=vertices.max(FEWEST) {
-            push_integer(&mut self.plain, i as u32);
-        }
-        self.plain.push(b'\n');
+        let vertices = seen.coordinates.len();
+        seen.take_face(corners.iter().map(|c| c.vertex_of(vertices)), line);
+        Ok(())
     }
 
     fn statement(&mut self, line: u64, statement: &[u8]) -> Result<(), ReadError> {
@@ -167,7 +137,7 @@ impl<'a, 'w, 'c> Filter<'a, 'w, 'c> {
         let seen = &mut self.seen;
         seen.statements += 1;
         match keyword {
-            b"v" => return self.vertex(line, rest),
+            b"v" => return self.odd_vertex(line, rest),
             b"f" | b"fo" => return self.face(line, rest),
             b"vt" => seen.uvs.values.push(numbers(line, rest)?),
             b"vn" => seen.normals.values.push(DVec3::from(numbers::<3>(line, rest)?)),
@@ -213,53 +183,52 @@ impl<'a, 'w, 'c> Filter<'a, 'w, 'c> {
         if wanted > allowed { Err(ReadError::Limit { what, wanted, allowed }) } else { Ok(()) }
     }
 
-    fn vertex(&mut self, line: u64, rest: &[u8]) -> Result<(), ReadError> {
-        self.limits.check_vertices(self.seen.vertices as u64 + 1)?;
-        self.plain.extend_from_slice(b"v");
-        let rest = match plain_coordinates(rest) {
-            // Most likely numbers: tobj finds out, and the line is looked for only if they are none.
-            Some(end) => {
-                self.plain.extend_from_slice(&rest[..end]);
-                &rest[end..]
-            }
-            None => self.odd_coordinates(line, rest)?,
-        };
-        self.plain.push(b'\n');
+    /// Takes a vertex: the text of its coordinates, and what follows them.
+    fn vertex(&mut self, line: u64, coordinates: &[u8], rest: &[u8]) -> Result<(), ReadError> {
         let seen = &mut self.seen;
+        let vertices = seen.coordinates.len();
+        self.limits.check_vertices(vertices as u64 + 1)?;
         if rest.iter().any(|&b| !is_blank(b)) {
             seen.color(line, rest);
         }
-        if seen.colors.len() <= seen.vertices {
+        if seen.colors.len() <= vertices {
             seen.uncolored += 1;
             if seen.uncolored == 1 {
                 seen.first_uncolored = line;
             }
         }
-        seen.vertices += 1;
-        Ok(())
+        seen.coordinates.push(coordinates).map_err(unread)
     }
 
-    /// Passes on three coordinates in a spelling of ours, and returns what follows them.
-    fn odd_coordinates<'s>(&mut self, line: u64, mut rest: &'s [u8]) -> Result<&'s [u8], ReadError> {
+    fn odd_vertex(&mut self, line: u64, rest: &[u8]) -> Result<(), ReadError> {
+        if let Some(end) = plain_coordinates(rest) {
+            return self.vertex(line, &rest[..end], &rest[end..]);
+        }
+        // Passed on in a spelling of ours.
+        let mut spelled = std::mem::take(&mut self.seen.spelled);
+        spelled.clear();
+        let mut after = rest;
         for _ in 0..3 {
-            let start = rest.iter().position(|&b| !is_blank(b));
+            let start = after.iter().position(|&b| !is_blank(b));
             let Some(start) = start else {
                 return Err(ReadError::line(line, Malformed::Expected("three coordinates")));
             };
-            let length = rest[start..].iter().position(|&b| is_blank(b)).unwrap_or(rest.len() - start);
-            let (word, after) = rest[start..].split_at(length);
+            let length = after[start..].iter().position(|&b| is_blank(b)).unwrap_or(after.len() - start);
+            let (word, behind) = after[start..].split_at(length);
             let value = number_at(line, word)?;
             // Writing to a vector does not fail.
-            let _ = write!(self.plain, " {value}");
-            rest = after;
+            let _ = write!(spelled, " {value}");
+            after = behind;
         }
-        Ok(rest)
+        let taken = self.vertex(line, &spelled, after);
+        self.seen.spelled = spelled;
+        taken
     }
 
     fn face(&mut self, line: u64, rest: &[u8]) -> Result<(), ReadError> {
         let seen = &mut self.seen;
-        let place = Place::Line(line);
-        self.limits.check_faces(seen.faces as u64 + 1)?;
+        self.limits.check_faces(seen.polygons.len() as u64 + 1)?;
+        let (vertices, before) = (seen.coordinates.len(), seen.polygons.corners().len());
         let mut face = std::mem::take(&mut seen.face);
         face.clear();
         let mut at = 0;
@@ -271,33 +240,28 @@ impl<'a, 'w, 'c> Filter<'a, 'w, 'c> {
                 break;
             }
             let corner = corner::read(rest, &mut at, line)?;
-            face.push(corner.vertex.resolve(seen.vertices).unwrap_or(PolygonSoup::NO_VERTEX));
-            if corner.uv != Index::Missing || corner.normal != Index::Missing || seen.has_attributes() {
-                seen.refer(corner.uv, corner.normal, place);
-            }
-            seen.corners += 1;
-            self.limits.check_corners(seen.corners as u64)?;
+            seen.take_attributes(&corner, before + face.len(), line);
+            face.push(corner.vertex_of(vertices));
+            self.limits.check_corners((before + face.len()) as u64)?;
         }
-        if face.len() < 3 {
-            seen.notes.add(NoteKind::ShortFace, place);
-        }
-        if face.len() < 3 || face.iter().any(|&v| v as usize >= seen.vertices) {
-            seen.held.faces.push((seen.faces, line));
-            seen.held.polygons.push(face.iter().copied());
-        } else {
-            self.plain.push(b'f');
-            if rest.iter().all(|b| b.is_ascii_digit() | (*b == b' ')) {
-                self.plain.extend_from_slice(rest);
-            } else {
-                for &v in &face {
-                    push_integer(&mut self.plain, v + 1);
-                }
-            }
-            self.plain.push(b'\n');
-        }
+        seen.take_face(face.iter().copied(), line);
         seen.face = face;
-        seen.faces += 1;
         Ok(())
+    }
+}
+
+fn unread(_: Unread) -> ReadError {
+    // Which of them is found out where files are refused.
+    ReadError::line(1, Malformed::Expected("three coordinates"))
+}
+
+/// How many bytes there are up to the beginning of the next line, if nothing but blanks is left of this one.
+fn end_of_line(text: &[u8]) -> Option<usize> {
+    let blanks = text.iter().position(|&b| b != b' ' && b != b'\t')?;
+    match text[blanks..] {
+        [b'\n', ..] => Some(blanks + 1),
+        [b'\r', b'\n', ..] => Some(blanks + 2),
+        _ => None,
     }
 }
 
@@ -328,21 +292,6 @@ fn numbers<const N: usize>(line: u64, rest: &[u8]) -> Result<[f64; N], ReadError
     Ok(values)
 }
 
-/// Appends a space and a number.
-fn push_integer(text: &mut Vec<u8>, mut n: u32) {
-    let mut digits = [b' '; 11];
-    let mut at = digits.len();
-    loop {
-        at -= 1;
-        digits[at] = b'0' + (n % 10) as u8;
-        n /= 10;
-        if n == 0 {
-            break;
-        }
-    }
-    text.extend_from_slice(&digits[at - 1..]);
-}
-
 /// The line of the face that has the corner of this number. For a note: only files with something odd pay for it.
 fn line_of_corner(text: &[u8], corner: usize) -> u64 {
     let mut before = 0;
@@ -359,15 +308,53 @@ fn line_of_corner(text: &[u8], corner: usize) -> u64 {
 }
 
 impl Seen {
-    fn has_attributes(&self) -> bool {
-        self.uvs.is_used() || self.normals.is_used()
+    fn take_face(&mut self, corners: impl ExactSizeIterator<Item = u32>, line: u64) {
+        if corners.len() < 3 {
+            self.notes.add(NoteKind::ShortFace, Place::Line(line));
+        }
+        self.polygons.push(corners);
     }
 
-    fn refer(&mut self, uv: Index, normal: Index, place: Place) {
-        let known = [self.uvs.refer(uv, self.corners), self.normals.refer(normal, self.corners)];
-        for _ in known.iter().filter(|k| !**k) {
-            self.notes.add(NoteKind::AttributeOutOfRange, place);
+    /// Takes the texture coordinates and the normal of a corner, before which there are so many.
+    fn take_attributes(&mut self, corner: &Corner, before: usize, line: u64) {
+        let is_plain = corner.uv == Index::Missing && corner.normal == Index::Missing;
+        if is_plain && !self.uvs.is_used() && !self.normals.is_used() {
+            return;
         }
+        let known = [self.uvs.refer(corner.uv, before), self.normals.refer(corner.normal, before)];
+        for _ in known.iter().filter(|k| !**k) {
+            self.notes.add(NoteKind::AttributeOutOfRange, Place::Line(line));
+        }
+    }
+
+    fn finish(mut self, text: &[u8]) -> Result<(PolygonSoup, Notes, u64), ReadError> {
+        let vertices = self.coordinates.len();
+        let positions = std::mem::take(&mut self.coordinates).finish().map_err(unread)?;
+        if !self.colors.is_empty() {
+            self.colors.resize(vertices, [1.0; 4]);
+            for _ in 0..self.uncolored {
+                self.notes.add(NoteKind::MissingColor, Place::Line(self.first_uncolored));
+            }
+        }
+        self.end_group();
+        let line_of = |corner| line_of_corner(text, corner);
+        // A face may name vertices that come after it.
+        let mut odd = self.polygons.corners().iter().enumerate().filter(|c| *c.1 as usize >= vertices);
+        if let Some((first, _)) = odd.next() {
+            let place = Place::Line(line_of(first));
+            (0..=odd.count()).for_each(|_| self.notes.add(NoteKind::IndexOutOfRange, place));
+        }
+        let soup = PolygonSoup {
+            positions,
+            vertex_colors: self.colors,
+            corner_normals: self.normals.finish(&mut self.notes, line_of),
+            corner_uvs: self.uvs.finish(&mut self.notes, line_of),
+            polygons: self.polygons,
+            groups: self.groups,
+            material_files: self.material_files,
+            ..PolygonSoup::default()
+        };
+        Ok((soup, self.notes, self.statements))
     }
 
     /// What follows the coordinates: a weight, which says nothing about a polygon mesh, or a colour.
@@ -382,7 +369,7 @@ impl Seen {
             count += 1;
         }
         if count >= 3 {
-            self.colors.resize(self.vertices, [1.0; 4]);
+            self.colors.resize(self.coordinates.len(), [1.0; 4]);
             self.colors.push(color);
         }
     }
@@ -397,39 +384,17 @@ impl Seen {
 
     fn start_group(&mut self, new: Group) {
         self.end_group();
-        self.groups.push(Group { faces: self.faces..self.faces, ..new });
+        let faces = self.polygons.len();
+        self.groups.push(Group { faces: faces..faces, ..new });
     }
 
     /// A group without faces gives its place to the next; one without name and material says nothing.
     fn end_group(&mut self) {
-        let faces = self.faces;
+        let faces = self.polygons.len();
         let says_nothing = |g: &Group| g.faces.is_empty() || (g.name.is_empty() && g.material.is_none());
         if let Some(last) = self.groups.last_mut() {
             last.faces.end = faces;
         }
         self.groups.pop_if(|g| says_nothing(g));
-    }
-}
-
-impl Read for Filter<'_, '_, '_> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let text = self.fill_buf()?;
-        let count = text.len().min(buffer.len());
-        buffer[..count].copy_from_slice(&text[..count]);
-        self.consume(count);
-        Ok(count)
-    }
-}
-
-impl BufRead for Filter<'_, '_, '_> {
-    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
-        while self.at == self.plain.len() && !self.is_ended {
-            self.fill();
-        }
-        Ok(&self.plain[self.at..])
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.at = (self.at + count).min(self.plain.len());
     }
 }

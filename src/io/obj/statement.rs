@@ -18,6 +18,18 @@ impl<'a> Statements<'a> {
         self.lines.left()
     }
 
+    /// The text that is left, which begins with a line.
+    #[inline]
+    pub(super) fn rest(&self) -> Option<&'a [u8]> {
+        self.lines.rest()
+    }
+
+    /// Takes so many bytes, which are a line and its end; its number.
+    #[inline]
+    pub(super) fn take_line(&mut self, bytes: usize) -> u64 {
+        self.lines.take_line(bytes)
+    }
+
     fn joined(&mut self, first: &[u8]) -> Vec<u8> {
         let mut joined = first.to_vec();
         for (_, line) in self.lines.by_ref() {

@@ -31,6 +31,9 @@ pub(super) fn read(
     Ok(())
 }
 
+/// Elements between two looks at the hook: few enough to stay in the nearest memory.
+const BLOCK: usize = 1024;
+
 /// Vertices without lists: all of the same size.
 fn take_vertices(
     reader: &mut Reader,
@@ -40,29 +43,115 @@ fn take_vertices(
     size: usize,
     watch: &mut Watch<'_, '_>,
 ) -> Result<(), ReadError> {
-    let first = input.start + input.at;
+    let mut byte = input.start + input.at;
     let bytes = input.elements(element.count, size)?;
-    let places: Vec<(Scalar, usize)> = element
-        .properties
-        .iter()
-        .scan(0, |at, p| {
-            let place = (p.scalar, *at);
-            *at += p.scalar.size();
-            Some(place)
-        })
-        .collect();
-    let is_big = input.is_big;
-    let left = input.data.len() - input.at + bytes.len();
-    for (i, vertex) in bytes.chunks_exact(size).enumerate() {
-        watch.tick(left - i * size)?;
-        let value = |property: usize| {
-            let value =
-                places.get(property).and_then(|&(scalar, at)| scalar.decode(vertex.get(at..)?, is_big));
-            value.unwrap_or_default()
-        };
-        reader.take_vertex(layout, value, Place::Byte((first + i * size) as u64));
+    let mut left = input.data.len() - input.at + bytes.len();
+    let places = element.properties.iter().scan(0, |at, p| {
+        let place = (p.scalar, *at);
+        *at += p.scalar.size();
+        Some(place)
+    });
+    let places: Vec<(Scalar, usize)> = places.collect();
+    let mut columns = Default::default();
+    for block in bytes.chunks(BLOCK * size) {
+        watch.ticks(block.len() / size, left)?;
+        let records = Records { bytes: block, size, places: &places, is_big: input.is_big };
+        reader.take_vertices(layout, &records, byte, &mut columns);
+        left -= block.len();
+        byte += block.len();
     }
     Ok(())
+}
+
+/// Elements of one size.
+pub(super) struct Records<'a> {
+    bytes: &'a [u8],
+    pub(super) size: usize,
+    /// The type of each property, and where in an element it stands.
+    places: &'a [(Scalar, usize)],
+    is_big: bool,
+}
+
+impl Records<'_> {
+    /// The values of a few properties, for each element; `columns` is scratch. A column is decoded at a time, so that types
+    /// are not asked for with each value.
+    pub(super) fn rows<'c, const N: usize>(
+        &self,
+        properties: [usize; N],
+        columns: &'c mut [Vec<f64>; 4],
+    ) -> impl Iterator<Item = [f64; N]> + 'c {
+        const { assert!(N <= 4) };
+        columns.iter_mut().zip(properties).for_each(|(column, i)| self.column(i, column));
+        (0..columns[0].len()).map(|i| std::array::from_fn(|k| columns[k][i]))
+    }
+
+    fn column(&self, property: usize, values: &mut Vec<f64>) {
+        values.clear();
+        let Some(&(scalar, at)) = self.places.get(property) else { return };
+        macro_rules! column {
+            ($t:ty) => {{
+                let fields = self.bytes.chunks_exact(self.size).filter_map(|r| r[at..].first_chunk());
+                if self.is_big {
+                    values.extend(fields.map(|b| f64::from(<$t>::from_be_bytes(*b))));
+                } else {
+                    values.extend(fields.map(|b| f64::from(<$t>::from_le_bytes(*b))));
+                }
+            }};
+        }
+        match scalar {
+            Scalar::I8 => column!(i8),
+            Scalar::U8 => column!(u8),
+            Scalar::I16 => column!(i16),
+            Scalar::U16 => column!(u16),
+            Scalar::I32 => column!(i32),
+            Scalar::U32 => column!(u32),
+            Scalar::F32 => column!(f32),
+            Scalar::F64 => column!(f64),
+        }
+    }
+}
+
+/// A triangle as nearly all files have it: a byte that counts, and three indices of 32 bits.
+const TRIANGLE: usize = 13;
+
+/// Whether triangles of an element may be such.
+fn has_plain_triangles(element: &Element, role: &Role) -> bool {
+    matches!(role, Role::Face { .. })
+        && matches!(&element.properties[..],
+            [p] if p.list == Some(Scalar::U8) && matches!(p.scalar, Scalar::I32 | Scalar::U32))
+}
+
+/// Takes triangles in a row, at most `most`, as long as the next face is one; how many there were.
+fn take_triangles(
+    reader: &mut Reader,
+    input: &mut Input<'_>,
+    scalar: Scalar,
+    most: u64,
+    watch: &mut Watch<'_, '_>,
+) -> Result<u64, ReadError> {
+    let most = most.min(reader.room_for_triangles());
+    let (records, _) = input.data[input.at..].as_chunks::<TRIANGLE>();
+    let records = &records[..records.len().min(usize::try_from(most).unwrap_or(usize::MAX))];
+    let (is_signed, is_big) = (scalar == Scalar::I32, input.is_big);
+    let mut taken = 0;
+    for block in records.chunks(BLOCK) {
+        let run = block.iter().position(|r| r[0] != 3).unwrap_or(block.len());
+        watch.ticks(run, input.data.len() - input.at)?;
+        let triangles = block[..run].iter().map(|r| {
+            let (corners, _) = r[1..].as_chunks();
+            [corners[0], corners[1], corners[2]].map(|b| {
+                let index = if is_big { u32::from_be_bytes(b) } else { u32::from_le_bytes(b) };
+                if is_signed && index > i32::MAX as u32 { PolygonSoup::NO_VERTEX } else { index }
+            })
+        });
+        reader.take_triangles(triangles, input.start + input.at, TRIANGLE);
+        input.at += run * TRIANGLE;
+        taken += run as u64;
+        if run < block.len() {
+            break;
+        }
+    }
+    Ok(taken)
 }
 
 /// Elements with lists.
@@ -74,7 +163,16 @@ fn read_varying(
     watch: &mut Watch<'_, '_>,
 ) -> Result<(), ReadError> {
     let (mut values, mut corners, mut texcoords) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..element.count {
+    let is_plain = has_plain_triangles(element, role);
+    let mut left = element.count;
+    loop {
+        if is_plain {
+            left -= take_triangles(reader, input, element.properties[0].scalar, left, watch)?;
+        }
+        if left == 0 {
+            break;
+        }
+        left -= 1;
         watch.tick(input.data.len() - input.at)?;
         let start = input.at;
         let place = input.place();

@@ -3,6 +3,7 @@
 use super::super::error::{Malformed, NoteKind, Notes, Place, ReadError};
 use super::super::watch::Watch;
 use super::super::{Limits, Loaded};
+use super::binary::Records;
 use super::header::{self, Element, Encoding, Header};
 use crate::{CornerData, PolygonSoup, Polygons};
 use glam::DVec3;
@@ -139,6 +140,66 @@ pub(super) struct Reader {
 }
 
 impl Reader {
+    /// Takes vertices of one size, the first of which begins at `byte`; `columns` is scratch.
+    pub(super) fn take_vertices(
+        &mut self,
+        layout: &VertexLayout,
+        records: &Records<'_>,
+        byte: usize,
+        columns: &mut [Vec<f64>; 4],
+    ) {
+        let soup = &mut self.soup;
+        let first = soup.positions.len();
+        soup.positions.extend(records.rows(layout.position, columns).map(DVec3::from_array));
+        if soup.positions[first..].iter().any(|p| !p.is_finite()) {
+            let odd = soup.positions[first..].iter().enumerate().filter(|(_, p)| !p.is_finite());
+            for (i, _) in odd {
+                let place = Place::Byte((byte + i * records.size) as u64);
+                self.notes.add(NoteKind::NonFiniteCoordinate, place);
+            }
+        }
+        if let Some([x, y, z]) = layout.normal {
+            soup.vertex_normals.extend(records.rows([x, y, z], columns).map(DVec3::from_array));
+        }
+        if let Some(([r, g, b], alpha, full)) = layout.color {
+            let part = |x: f64| (x / full) as f32;
+            let colors = records.rows([r, g, b, alpha.unwrap_or(b)], columns).map(|rgba| rgba.map(part));
+            soup.vertex_colors
+                .extend(colors.map(|[r, g, b, a]| [r, g, b, if alpha.is_some() { a } else { 1.0 }]));
+        }
+        if let Some(uv) = layout.uv {
+            self.uvs.extend(records.rows(uv, columns));
+        }
+    }
+
+    /// How many more triangles the limits allow.
+    pub(super) fn room_for_triangles(&self) -> u64 {
+        let polygons = &self.soup.polygons;
+        let faces = self.limits.faces.saturating_sub(polygons.len() as u64);
+        faces.min(self.limits.corners.saturating_sub(polygons.corners().len() as u64) / 3)
+    }
+
+    /// Takes triangles, no more than there is [room](Self::room_for_triangles) for; each is as long as the others, and the
+    /// first begins at `byte`.
+    pub(super) fn take_triangles(
+        &mut self,
+        triangles: impl Iterator<Item = [u32; 3]>,
+        byte: usize,
+        size: usize,
+    ) {
+        let polygons = &mut self.soup.polygons;
+        let first = polygons.corners().len();
+        polygons.push_triangles(triangles);
+        let corners = &polygons.corners()[first..];
+        let vertices = self.vertices;
+        let is_odd = |v: u32| u64::from(v) >= vertices;
+        if is_odd(corners.iter().copied().max().unwrap_or(0)) {
+            for (i, _) in corners.iter().enumerate().filter(|(_, v)| is_odd(**v)) {
+                self.notes.add(NoteKind::IndexOutOfRange, Place::Byte((byte + i / 3 * size) as u64));
+            }
+        }
+    }
+
     pub(super) fn take_vertex(&mut self, layout: &VertexLayout, value: impl Fn(usize) -> f64, place: Place) {
         let three = |at: [usize; 3]| DVec3::from(at.map(&value));
         let p = three(layout.position);
@@ -199,7 +260,12 @@ impl Reader {
                     self.notes.add(NoteKind::Ignored, place);
                 }
                 self.uvs_at = layout.uv.map(|_| place);
-                self.soup.positions.reserve(element.count as usize);
+                let count = element.count as usize;
+                let room = |has: bool| if has { count } else { 0 };
+                self.soup.positions.reserve(count);
+                self.soup.vertex_normals.reserve(room(layout.normal.is_some()));
+                self.soup.vertex_colors.reserve(room(layout.color.is_some()));
+                self.uvs.reserve(room(layout.uv.is_some()));
                 return Role::Vertex(layout);
             }
         }
