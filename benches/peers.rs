@@ -9,11 +9,11 @@
 mod shapes;
 
 use cpu_time::ThreadTime;
-use meshwright::glam::DVec3;
 use meshwright::cleanup::{self, CleanOptions, Weld};
+use meshwright::glam::DVec3;
 use meshwright::{
-    IndexedMesh, Mesh, NormalWeight, PolygonSoup, Polygons, Scheme, SmoothMethod, SmoothOptions, SubdivideOptions,
-    WeldOptions, unify_winding,
+    IndexedMesh, Mesh, NormalWeight, PolygonSoup, Polygons, Scheme, SmoothMethod, SmoothOptions,
+    SubdivideOptions, WeldOptions, unify_winding,
 };
 use std::error::Error;
 use std::hint::black_box;
@@ -224,7 +224,8 @@ impl Timer<'_> {
         // Every face with corners of its own, as in an STL file.
         let corners = pool.polygons().corners();
         let points = corners.iter().map(|&v| pool.positions()[v as usize]).collect();
-        let single: Vec<[u32; 3]> = (0..corners.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+        let single: Vec<[u32; 3]> =
+            (0..corners.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
         let soup = PolygonSoup::new(points, Polygons::from_triangles(&single));
         let welded = self.seconds("weld_soup", || cleanup::index(&soup, Weld::Exact).expect("any soup"));
         if let Some(welded) = welded {

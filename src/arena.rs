@@ -180,9 +180,8 @@ impl<K: Key> Arena<K> {
             self.slots.contains_key(self.key(s))
         });
         let is_fresh = self.versions.is_empty() && self.slots.is_empty();
-        let is_settled = || {
-            known && self.fresh == 0 && occupied == self.slots.len() && self.versions.first() == Some(&0)
-        };
+        let is_settled =
+            || known && self.fresh == 0 && occupied == self.slots.len() && self.versions.first() == Some(&0);
         (is_fresh || is_settled()) && (self.ranks.is_empty() || self.ranks.len() == self.slot_count())
     }
 

@@ -123,7 +123,6 @@ impl crate::Topology<'_> {
     /// The signed enclosed volume in cubic units, if the faces enclose one: every edge has two faces, wound alike.
     /// Pinches do no harm. Negative if the surface is inside out. O(corners).
     pub fn volume(&self) -> Option<f64> {
-        (self.is_closed() && self.is_oriented())
-            .then(|| volume(self.mesh.positions(), self.mesh.polygons()))
+        (self.is_closed() && self.is_oriented()).then(|| volume(self.mesh.positions(), self.mesh.polygons()))
     }
 }
