@@ -129,3 +129,28 @@ fn a_crack_in_a_sphere_is_bridged_and_nothing_else() {
     assert!((1e-5..1e-4).contains(&proposed.tolerance), "{proposed:?}");
     assert_eq!(proposed.naked_after, 0);
 }
+
+#[test]
+fn triangles_at_random_are_not_noise() {
+    let mut noise = Noise(5);
+    let mut unit = || noise.unit();
+    for flat in [1.0, 0.0] {
+        let points: Vec<DVec3> = (0..9000).map(|_| dvec3(unit(), unit(), unit() * flat)).collect();
+        let faces = (0..3000).map(|i| vec![3 * i, 3 * i + 1, 3 * i + 2]).collect::<Vec<_>>();
+        let proposed = propose_tolerance_with_reasons(&PolygonSoup::new(points, faces.into()));
+        assert_eq!((proposed.tolerance, proposed.reach), (0.0, 0.0), "{proposed:?}");
+    }
+}
+
+#[test]
+fn a_large_polygon_that_is_there_twice_does_not_speak_against_a_tolerance() {
+    let truth = shapes::bracket(48);
+    let mut soup = jittered(&truth, 1e-6 * diagonal(&truth), 3);
+    let large = truth.polygons().iter().max_by_key(|f| f.len()).expect("faces").to_vec();
+    for _ in 0..2 {
+        soup.polygons.push((soup.positions.len() as u32..).take(large.len()));
+        soup.positions.extend(large.iter().map(|&v| truth.positions()[v as usize]));
+    }
+    let welded = index(&soup, Weld::Auto).expect("never refused").value;
+    assert_eq!(welded.vertex_count(), truth.vertex_count());
+}

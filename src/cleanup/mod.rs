@@ -140,7 +140,10 @@ pub enum CleanError {
 /// it then faces. What lies in the middle of a parted edge is the mean of its ends. Values that are not finite are left
 /// out. [`Report::not_carried`] names the attributes that the result does not have, [`Report::lost_values`] the single values.
 ///
-/// O(n log n) in the corners at worst, linear without defects; holes of up to 500 edges take the cube of that.
+/// O(n log n) in the corners at worst, linear without defects; holes of up to 500 edges take the cube of that, and searches in
+/// files made to be slow end early. Memory, the soup included, is at most ten times
+/// what positions (24 bytes each), corners (4) and faces (8) of the soup take: four times if nothing is wrong, six if nearly
+/// every corner is moved by the weld, which leaves a record of each, and nine for triangles that share no vertices.
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.

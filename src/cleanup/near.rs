@@ -33,9 +33,9 @@ impl Tree {
         ball(&self.nodes, center, &mut radius, &mut visit);
     }
 
-    /// Calls `visit` with points near the segment: with all that are no farther from it than the radius, and some
+    /// Calls `visit` with points near the segment, and their places: with all that are no farther from it than the radius, and some
     /// others. It returns whether to go on.
-    pub(super) fn tube(&self, [a, b]: [DVec3; 2], radius: f64, mut visit: impl FnMut(u32) -> bool) {
+    pub(super) fn tube(&self, [a, b]: [DVec3; 2], radius: f64, mut visit: impl FnMut(u32, DVec3) -> bool) {
         tube(&self.nodes, a, b - a, [0.0, 1.0], radius, &mut visit);
     }
 }
@@ -88,14 +88,14 @@ fn tube(
     along: DVec3,
     [from, to]: [f64; 2],
     radius: f64,
-    visit: &mut impl FnMut(u32) -> bool,
+    visit: &mut impl FnMut(u32, DVec3) -> bool,
 ) -> bool {
     if nodes.len() <= LEAF {
-        return nodes.iter().all(|n| visit(n.id));
+        return nodes.iter().all(|n| visit(n.id, n.point));
     }
     let (below, rest) = nodes.split_at(nodes.len() / 2);
     let (n, above) = (&rest[0], &rest[1..]);
-    if !visit(n.id) {
+    if !visit(n.id, n.point) {
         return false;
     }
     let (x, dx, split) = (start[n.axis as usize], along[n.axis as usize], n.point[n.axis as usize]);
@@ -146,7 +146,8 @@ mod tests {
             prop_assert_eq!(found, near);
 
             let mut found = vec![false; points.len()];
-            tree.tube([a, b], radius, |id| {
+            tree.tube([a, b], radius, |id, p| {
+                assert_eq!(p, points[id as usize]);
                 assert!(!std::mem::replace(&mut found[id as usize], true), "once");
                 true
             });

@@ -313,23 +313,33 @@ impl<'s> Pool<'s> {
             return;
         }
         let soup = self.soup;
-        let vertices = soup.positions.iter().zip(0u32..).filter(|(p, _)| p.is_finite());
-        let mut farthest = 0.0f64;
-        let [mut welded, mut stitched] = [Vec::new(), Vec::new()];
-        for (&p, v) in vertices {
-            let Some(q) = ended(v).filter(|&q| q != p) else { continue };
-            let record = |step| Record::new(step, Kind::MergedVertex, Element::Vertex(v), Some(p));
-            if self.stitched.binary_search(&v).is_ok() {
-                stitched.push(record(Step::Stitch));
+        let merges = || {
+            let vertices = soup.positions.iter().zip(0u32..).filter(|(p, _)| p.is_finite());
+            vertices.filter_map(|(&p, v)| Some((v, p, ended(v).filter(|&q| q != p)?)))
+        };
+        let is_stitched = |v: u32| self.stitched.binary_search(&v).is_ok();
+        let (mut welded, mut stitched, mut farthest) = (0, 0, 0.0f64);
+        for (v, p, q) in merges() {
+            if is_stitched(v) {
+                stitched += 1;
             } else {
+                welded += 1;
                 farthest = farthest.max(distance(p, q));
-                welded.push(record(Step::Weld));
             }
         }
-        for (step, merges) in [(Step::Weld, welded), (Step::Stitch, stitched)] {
-            let before = self.report.records.partition_point(|r| r.step < step);
-            self.report.records.splice(before..before, merges);
+        // In a soup there may be several for each face: they are written once, where they belong.
+        let later = std::mem::take(&mut self.report.records);
+        let mut records = Vec::with_capacity(later.len() + welded + stitched);
+        let mut later = later.into_iter().peekable();
+        for (step, wanted) in [(Step::Weld, false), (Step::Stitch, true)] {
+            records.extend(std::iter::from_fn(|| later.next_if(|r| r.step < step)));
+            let own = merges().filter(|m| is_stitched(m.0) == wanted);
+            records.extend(
+                own.map(|(v, p, _)| Record::new(step, Kind::MergedVertex, Element::Vertex(v), Some(p))),
+            );
         }
+        records.extend(later);
+        self.report.records = records;
         for step in self.report.steps.iter_mut().filter(|s| s.step == Step::Weld) {
             step.moved = farthest;
         }

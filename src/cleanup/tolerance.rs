@@ -7,7 +7,7 @@ use super::{CleanError, Weld};
 use crate::geometry::measure::Aabb;
 use crate::geometry::{distance, unit_scale};
 use crate::matching::{Chains, Matching};
-use crate::topology::{FaceOf, next_corner};
+use crate::topology::{FaceOf, duplicate_faces, next_corner};
 use crate::{Cancelled, Control, PolygonSoup, Polygons};
 use glam::DVec3;
 
@@ -35,13 +35,15 @@ pub struct ProposedTolerance {
 /// After an exact weld each naked edge is asked for the naked edge that it comes to lie on if ends are moved least. In
 /// a soup of which every corner was moved a little, these distances stop at the largest move, and then for a long while
 /// nothing follows: a tolerance is proposed where there is such a gap, below the lengths of the edges, and tried. It
-/// is taken if it folds no more than one face in five hundred, makes no new edge of three or more faces, and leaves as few
-/// naked edges as a greater one, but for one in a hundred. Where faces do not share vertices yet, needles, fins and faces
-/// that are there twice show only in the weld: there one face in 25 may fold, and third and later faces of edges may be up
-/// to a tenth of the naked edges. A file without naked edges gets 0, and so does one whose boundary is meant.
+/// is taken if it folds no more than one face in five hundred, makes no new edge of three or more faces, joins at least a
+/// quarter of the naked edges that have such a distance, and leaves as few of them as a greater one, but for one in a
+/// hundred. Where faces do not share vertices yet, needles, fins and faces that are there twice show only in the weld: there
+/// one face in 25 may fold, and third and later faces of edges may be up to a tenth of the naked edges. A file without
+/// naked edges gets 0, and so does one whose boundary is meant.
 ///
-/// What it asks of distances: no more than a quarter of the length of the edges they join, on the average; and, unless
-/// two in five of all edges are such, a thousandth of the box's diagonal.
+/// What it asks of the distances up to a gap and behind the one before: no more than a tenth of the length of the edges
+/// they join, for most, and a thousandth of the box's diagonal; if two in five of all edges are such, no more than half of
+/// the length of the edges.
 ///
 /// O(n log n) in the corners; a few welds.
 ///
@@ -115,15 +117,21 @@ pub(super) fn propose(
         let most = gap.tolerance();
         for t in [most, most * 0.7, gap.last * 1.01, gap.last * 0.5, gap.last * 0.25] {
             proposed.tried += 1;
-            match try_weld(positions, polygons, t, may, control)? {
-                Trial::Folds if t == most => proposed.reach = proposed.reach.max(most),
-                Trial::Leaves(naked, merged) if naked < before => {
-                    taken.push((naked, t, merged));
+            let trial = try_weld(positions, polygons, t, may, control)?;
+            let joins = before.saturating_sub(trial.naked) >= gap.promised / 4;
+            if trial.folded <= may.folded && trial.more <= may.more {
+                if joins && trial.naked < before {
+                    taken.push((trial.naked, t, trial.merged));
                     // Less than nearly as many could not leave nearly as few naked edges.
                     enough = gap.count - gap.count / 50;
                     break;
                 }
-                _ => {}
+            } else if t == most {
+                // Of a soup, a weld makes a surface, but for some faces.
+                let makes_surface = joins && trial.folded <= polygons.len() / 4 && trial.more <= before / 4;
+                if !gap.is_soup || makes_surface {
+                    proposed.reach = proposed.reach.max(most);
+                }
             }
         }
     }
@@ -149,11 +157,15 @@ struct Bounds {
 }
 
 /// What a weld on trial does.
-enum Trial {
-    /// More than it may.
-    Folds,
-    /// That many naked edges are left; and what vertices are merged into.
-    Leaves(usize, Vec<u32>),
+struct Trial {
+    /// Faces that are lost.
+    folded: usize,
+    /// Third and later faces of edges.
+    more: usize,
+    /// Naked edges that are left.
+    naked: usize,
+    /// What vertices are merged into.
+    merged: Vec<u32>,
 }
 
 /// Welds on trial.
@@ -165,28 +177,45 @@ fn try_weld(
     control: &mut Control<'_>,
 ) -> Result<Trial, Cancelled> {
     control.report("propose a tolerance", 0.0)?;
-    let Ok(merged) = weld(positions, Some(tolerance), &mut Control::none()) else { return Ok(Trial::Folds) };
+    let merged = weld(positions, Some(tolerance), &mut Control::none()).unwrap_or_default();
     let mut left = Polygons::with_capacity(polygons.len(), polygons.corners().len());
     let mut sorted: Vec<u32> = Vec::new();
-    let mut folded = 0;
+    let of = |v: &u32| merged.get(*v as usize).copied().unwrap_or(*v);
     for face in polygons.iter() {
         sorted.clear();
-        sorted.extend(face.iter().map(|&v| merged[v as usize]));
+        sorted.extend(face.iter().map(of));
         sorted.sort_unstable();
         if sorted.windows(2).all(|w| w[0] != w[1]) {
-            left.push(face.iter().map(|&v| merged[v as usize]));
-        } else {
-            folded += 1;
-            if folded > may.folded {
-                return Ok(Trial::Folds);
-            }
+            left.push(face.iter().map(of));
         }
     }
-    let chains = Chains::new(positions.len(), &left);
-    if chains.more_uses() > may.more {
-        return Ok(Trial::Folds);
+    let folded = polygons.len() - left.len();
+    let mut chains = Chains::new(positions.len(), &left);
+    if folded <= may.folded && chains.more_uses() > may.more {
+        // One large polygon that is there twice has as many uses too many as it has edges.
+        drop(chains);
+        let single = once(positions.len(), &left);
+        // Where many are, the weld has laid them on each other.
+        if left.len() - single.len() <= polygons.len() / 10 {
+            left = single;
+        }
+        chains = Chains::new(positions.len(), &left);
     }
-    Ok(Trial::Leaves(chains.into_pairing().open.len(), merged))
+    let more = chains.more_uses();
+    Ok(Trial { folded, more, naked: chains.into_pairing().open.len(), merged })
+}
+
+/// The faces without those that are there already.
+fn once(vertex_count: usize, polygons: &Polygons) -> Polygons {
+    let again = duplicate_faces(polygons, &Matching::new(vertex_count, polygons));
+    let mut left = Polygons::with_capacity(polygons.len() - again.len(), polygons.corners().len());
+    let mut again = again.iter().peekable();
+    for (f, face) in (0u32..).zip(polygons.iter()) {
+        if again.next_if(|a| a.0 == f).is_none() {
+            left.push(face.iter().copied());
+        }
+    }
+    left
 }
 
 /// A distance of naked edges after which there is none for a while.
@@ -198,6 +227,10 @@ struct Gap {
     next: f64,
     /// How many distances lie before it.
     count: usize,
+    /// How many naked edges that are in all.
+    promised: usize,
+    /// Whether two in five of all edges have a distance before it, and behind the gap before.
+    is_soup: bool,
 }
 
 impl Gap {
@@ -272,8 +305,10 @@ impl Edges {
             .filter(|f| f.0 > 0.0)
             .collect();
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let mut gaps = Vec::new();
-        for i in (0..found.len()).rev() {
+        let mut gaps: Vec<Gap> = Vec::new();
+        // Where the distances begin that no gap so far accounts for.
+        let mut own = 0;
+        for i in 0..found.len() {
             let (last, next) = (found[i].0, found.get(i + 1).map_or(f64::INFINITY, |f| f.0));
             if next < 2.0 * last {
                 continue;
@@ -283,15 +318,18 @@ impl Edges {
             let mut parts: Vec<f64> = found[from..=i].iter().map(|f| f.1).collect();
             parts.sort_unstable_by(f64::total_cmp);
             let part = parts[parts.len() / 2];
-            let is_soup = (i + 1) as f64 / asked as f64 * self.naked as f64 >= 0.4 * edge_count as f64;
+            // If a gap below has done with most of a soup, what is left is no soup.
+            let in_all = |count: usize| count as f64 / asked as f64 * self.naked as f64;
+            let is_soup = in_all(i + 1 - own) >= 0.4 * edge_count as f64;
             let last = last / self.scale;
             if part <= 0.5 && (is_soup || part <= 0.1 && last <= diagonal * 1e-3) {
-                gaps.push(Gap { last, next: next / self.scale, count: i + 1 });
-            }
-            if gaps.len() == 4 {
-                break;
+                let promised = in_all(i + 1) as usize;
+                gaps.push(Gap { last, next: next / self.scale, count: i + 1, promised, is_soup });
+                own = i + 1;
             }
         }
+        gaps.reverse();
+        gaps.truncate(4);
         gaps
     }
 }

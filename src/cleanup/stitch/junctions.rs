@@ -222,9 +222,8 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
         }
         let [a, b] = edge.ends.map(|end| seams.at(end));
         hits.clear();
-        tree.tube([a, b], seams.reach, |class| {
+        tree.tube([a, b], seams.reach, |class, p| {
             looks -= 1;
-            let p = classes.place(class);
             let (square, at) = segment_foot(a - p, b - p);
             let is_inside = p.distance(a) > seams.reach && p.distance(b) > seams.reach;
             let is_near = square.sqrt() <= seams.reach && at > 0.0 && at < 1.0;

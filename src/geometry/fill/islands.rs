@@ -11,6 +11,12 @@ const SAMPLES: usize = 8;
 /// Area vectors of an outer and an inner loop enclose at least the angle with this cosine.
 const AGAINST: f64 = -0.5;
 
+/// So many steps along outer loops are taken in all, and a pair of loops counts as [`PAIR`]: a second or two. Tens of
+/// thousands of holes within a loop of tens of thousands of edges need no more; what is left after that is taken to lie
+/// beside each other.
+const STEPS: usize = 1 << 30;
+const PAIR: usize = 16;
+
 /// A loop as a plane figure.
 struct Outline {
     first: u32,
@@ -42,43 +48,77 @@ impl Outline {
         }
     }
 
-    /// Whether the other one lies within the hole, not deeper than `depth` sizes: it faces the other way, and its corners
-    /// lie inside when looked at along the area vector.
-    fn holds(&self, other: &Self, mesh: &Mesh, scale: f64, depth: f64) -> bool {
-        if self.normal.dot(other.normal) > AGAINST || other.size >= self.size {
-            return false;
-        }
-        let deep = |p: DVec3| (p - self.center).dot(self.normal).abs() > depth * self.size;
-        if mesh.loop_slots(other.first).any(|h| deep(mesh.at(h) * scale)) {
-            return false;
-        }
+    /// The axes of the plane across the area vector, through the center.
+    fn axes(&self) -> [DVec3; 2] {
         let (x, y) = self.normal.any_orthonormal_pair();
-        let flat = |h: u32| {
-            let p = mesh.at(h) * scale - self.center;
-            DVec2::new(p.dot(x), p.dot(y))
-        };
+        [x, y]
+    }
+
+    /// The corners as they are seen along the area vector.
+    fn flat(&self, mesh: &Mesh, scale: f64) -> Flat {
+        let axes = self.axes();
+        let points: Vec<DVec2> =
+            mesh.loop_slots(self.first).map(|h| seen(mesh.at(h) * scale - self.center, axes)).collect();
+        let far = DVec2::splat(f64::INFINITY);
+        let min = points.iter().copied().fold(far, DVec2::min);
+        let max = points.iter().copied().fold(-far, DVec2::max);
+        Flat { axes, points, min, max }
+    }
+
+    /// Whether the other one may lie within the hole, not deeper than `depth` sizes: it faces the other way.
+    fn may_hold(&self, other: &Self, mesh: &Mesh, scale: f64, depth: f64) -> bool {
+        let deep = |p: DVec3| (p - self.center).dot(self.normal).abs() > depth * self.size;
+        self.normal.dot(other.normal) <= AGAINST
+            && other.size < self.size
+            && !mesh.loop_slots(other.first).any(|h| deep(mesh.at(h) * scale))
+    }
+
+    /// Whether corners of the other one lie inside when looked at along the area vector. `steps` is spent.
+    fn holds(&self, flat: &Flat, other: &Self, mesh: &Mesh, scale: f64, steps: &mut usize) -> bool {
         mesh.loop_slots(other.first).step_by(other.count.div_ceil(SAMPLES)).all(|h| {
-            let p = flat(h);
-            // A line from the point to the right crosses the outline an odd number of times.
-            let mut before = flat(mesh.prev[self.first as usize]);
-            let mut inside = false;
-            for h in mesh.loop_slots(self.first) {
-                let here = flat(h);
-                if (before.y > p.y) != (here.y > p.y) {
-                    let share = (p.y - before.y) / (here.y - before.y);
-                    inside ^= before.x + share * (here.x - before.x) > p.x;
-                }
-                before = here;
+            let p = seen(mesh.at(h) * scale - self.center, flat.axes);
+            if p.cmplt(flat.min).any() || p.cmpgt(flat.max).any() {
+                return false;
             }
-            inside
+            let left = steps.checked_sub(flat.points.len());
+            *steps = left.unwrap_or(0);
+            left.is_some() && flat.is_inside(p)
         })
+    }
+}
+
+/// A loop seen along its area vector.
+struct Flat {
+    axes: [DVec3; 2],
+    points: Vec<DVec2>,
+    min: DVec2,
+    max: DVec2,
+}
+
+fn seen(p: DVec3, [x, y]: [DVec3; 2]) -> DVec2 {
+    DVec2::new(p.dot(x), p.dot(y))
+}
+
+impl Flat {
+    /// Whether a line from the point to the right crosses the outline an odd number of times.
+    fn is_inside(&self, p: DVec2) -> bool {
+        let Some(&last) = self.points.last() else { return false };
+        let (mut before, mut inside) = (last, false);
+        for &here in &self.points {
+            if (before.y > p.y) != (here.y > p.y) {
+                let share = (p.y - before.y) / (here.y - before.y);
+                inside ^= before.x + share * (here.x - before.x) > p.x;
+            }
+            before = here;
+        }
+        inside
     }
 }
 
 /// Groups of two and more loops around one hole, each sorted, in the order of their first loops. `is_outer` says which loops
 /// may have others within. Loops are numbered as they are given by their first half-edges.
 ///
-/// O(n log n) for the loops, and each is compared with those that begin within its box.
+/// O(n log n) for the loops, and each is compared with those that begin within its box; in [`STEPS`] at most.
 pub(super) fn shared(
     mesh: &Mesh,
     loops: &[u32],
@@ -96,6 +136,7 @@ pub(super) fn shared(
     order.sort_unstable_by(|&a, &b| begins[a][axis].total_cmp(&begins[b][axis]).then(a.cmp(&b)));
 
     let mut group: Vec<usize> = (0..loops.len()).collect();
+    let mut steps = STEPS;
     for (a, outer) in outlines.iter().enumerate() {
         if outer.normal == DVec3::ZERO || !is_outer(a) {
             continue;
@@ -103,9 +144,16 @@ pub(super) fn shared(
         let slack = DVec3::splat(depth * outer.size);
         let (min, max) = (outer.min - slack, outer.max + slack);
         let start = order.partition_point(|&b| begins[b][axis] < min[axis]);
+        let mut flat = None;
         for &b in order[start..].iter().take_while(|&&b| begins[b][axis] <= max[axis]) {
+            let Some(left) = steps.checked_sub(PAIR) else { break };
+            steps = left;
             let is_near = begins[b].cmpge(min).all() && begins[b].cmple(max).all();
-            if a != b && is_near && outer.holds(&outlines[b], mesh, scale, depth) {
+            if a == b || !is_near || !outer.may_hold(&outlines[b], mesh, scale, depth) {
+                continue;
+            }
+            let flat = flat.get_or_insert_with(|| outer.flat(mesh, scale));
+            if outer.holds(flat, &outlines[b], mesh, scale, &mut steps) {
                 let (a, b) = (root(&mut group, a), root(&mut group, b));
                 group[a.max(b)] = a.min(b);
             }
