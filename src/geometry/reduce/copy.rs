@@ -7,6 +7,7 @@ use crate::Mesh;
 use crate::geometry::measure::Aabb;
 use crate::geometry::unit_scale;
 use crate::matching::NONE;
+use crate::order::along_a_curve;
 use glam::DVec3;
 
 /// To numbers about zero and about one, and back.
@@ -132,42 +133,6 @@ impl Copy {
             removed: 0,
         }
     }
-}
-
-/// Slots in the order in which their points lie along Morton's curve: what is near in space is near in the order.
-fn along_a_curve(points: impl Iterator<Item = (DVec3, u32)> + Clone) -> Vec<u32> {
-    let bounds =
-        Aabb::around(points.clone().map(|p| p.0)).unwrap_or(Aabb { min: DVec3::ZERO, max: DVec3::ZERO });
-    let per_unit = 1023.0 / (bounds.max - bounds.min).max_element().max(f64::MIN_POSITIVE);
-    let spread = |x: f64| {
-        let mut bits = (x as u32).min(1023);
-        for (shift, mask) in [(16, 0x0300_00FF), (8, 0x0300_F00F), (4, 0x030C_30C3), (2, 0x0924_9249)] {
-            bits = (bits | bits << shift) & mask;
-        }
-        bits
-    };
-    let code = |(p, slot): (DVec3, u32)| {
-        let cell = (p - bounds.min) * per_unit;
-        (spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, slot)
-    };
-    let mut from: Vec<(u32, u32)> = points.map(code).collect();
-    let mut to = vec![(0, 0); from.len()];
-    // A radix sort, ten bits at a time.
-    for shift in [0, 10, 20] {
-        let digit = |code: u32| (code >> shift & 1023) as usize;
-        let mut starts = [0usize; 1025];
-        from.iter().for_each(|p| starts[digit(p.0) + 1] += 1);
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        for &p in &from {
-            let start = &mut starts[digit(p.0)];
-            to[*start] = p;
-            *start += 1;
-        }
-        std::mem::swap(&mut from, &mut to);
-    }
-    from.into_iter().map(|p| p.1).collect()
 }
 
 #[cfg(test)]
