@@ -63,7 +63,7 @@ compile() {
 }
 if [ ${#openmesh[@]} -gt 0 ]; then
   compile openmesh "${openmesh[@]}"
-  compile openmesh_operations "${openmesh[@]}"
+  compile openmesh_operations "${openmesh[@]}" "$core/OpenMesh/Tools/Decimater/Observer.cc"
 fi
 compile cgal
 compile cgal_operations
