@@ -12,7 +12,8 @@ OURS = "meshwright"
 RATES = ("MB/s", "thousand/s")
 LEGEND = """Least processor time of one thread (rates: the highest), peers and ours in turns in one run on arrays or files in memory. *Ours is* says how many times
 better ours is than the best peer: above 1 is ahead, for rates and bytes too. Peers marked f32 work in single precision, ours and the others in double.
-Ratios hold only within one run: measure with `benches/peers/run.sh` on your machine."""
+Embree is asked one ray and one point at a time, in random order; ours both ways, one by one and as batches. Normals of OpenMesh are weighted by face,
+ours by area. Maps of a subdivision or a weld are made when they are first asked for, and are not in its time. Ratios hold only within one run: measure with `benches/peers/run.sh` on your machine."""
 
 
 def read(path):
@@ -116,6 +117,7 @@ def bars(shapes):
             continue
         yield from faster("build from arrays", shape, "build", 1, "openmesh", "openmesh_f32", "cgal")
         yield from at_least("memory of the mesh", shape, "memory", 104, "bytes/face", -1)
+        yield from at_least("memory once edited", shape, "memory_edited", 104, "bytes/face", -1)
         memory = ours(shape, "memory")
         yield from at_least("peak of the build", shape, "peak", round(2 * memory) if memory else 208, "bytes/face", -1)
         yield from faster("one-ring sweep", shape, "ring", 1, "cgal", "openmesh")
@@ -130,8 +132,11 @@ def bars(shapes):
         yield from faster("weld of the soup", shape, "weld_soup", 8, "cgal")
         yield from faster("soup to validated mesh", shape, "soup_to_mesh", 5, "cgal")
         yield from faster("first hit", shape, "first_hit", 0.5, "embree_f32")
+        yield from faster("first hit, asked in a batch", shape, "first_hit_batch", 0.5, "embree_f32", beside="first_hit")
         yield from faster("any hit", shape, "is_hit", 0.5, "embree_f32")
+        yield from faster("any hit, asked in a batch", shape, "is_hit_batch", 0.5, "embree_f32", beside="is_hit")
         yield from faster("closest point", shape, "closest_point", 1, "embree_f32")
+        yield from faster("closest point, asked in a batch", shape, "closest_point_batch", 1, "embree_f32", beside="closest_point")
         yield from faster("reading OBJ beside tobj", shape, "read_obj", 0.85, "tobj")
         yield from at_least("reading binary PLY", shape, "read_ply", 400, "MB/s")
         yield from at_least("reading binary STL and welding", shape, "read_stl_weld", 300, "MB/s")
