@@ -93,10 +93,10 @@ impl Table {
         Self { slots: vec![0; size], shift: 64 - size.trailing_zeros() }
     }
 
-    /// Where the search for a place begins.
+    /// Where the search for a place of this hash begins.
     #[inline(always)]
-    fn home(&self, p: DVec3) -> usize {
-        (hash(bits(p)) >> self.shift) as usize
+    fn home(&self, hash: u64) -> usize {
+        (hash >> self.shift) as usize
     }
 
     /// The kept vertex at this place, or the slot for a new one, from where the search begins. `None` if it takes long.
@@ -119,61 +119,106 @@ impl Table {
     fn grow(&mut self, kept: &[DVec3]) -> Option<()> {
         *self = Self::new(self.slots.len() * 2);
         for (&p, number) in kept.iter().zip(1..) {
-            let slot = self.find(p, self.home(p), kept)?.err()?;
+            let slot = self.find(p, self.home(hash(bits(p))), kept)?.err()?;
             self.slots[slot] = number;
         }
         Some(())
     }
 }
 
+/// The vertices that were there last, at a place that the hash gives: half of the hash above the vertex's index.
+struct Recent(Vec<u64>);
+
+impl Recent {
+    /// So many that a row of a grid still finds the row before, and that the second cache holds them.
+    const COUNT: usize = 1 << 14;
+    const TAG: u64 = !0 << 32;
+
+    fn new(vertices: usize) -> Self {
+        Self(vec![0; Self::COUNT.min(vertices.next_power_of_two())])
+    }
+
+    /// A vertex before this one that may be equal, or the vertex itself.
+    #[inline(always)]
+    fn replace(&mut self, hash: u64, own: u32) -> u32 {
+        let mask = self.0.len() - 1;
+        let tag = hash & Self::TAG;
+        let before = std::mem::replace(&mut self.0[hash as usize & mask], tag | u64::from(own));
+        // Only where the hash agrees, so that no memory is touched that went out of the caches.
+        if before & Self::TAG == tag { before as u32 } else { own }
+    }
+}
+
 /// In the order of vertices, so the first of equals is found by the rest. `None` if probes run long: a file made to do so
 /// must not cost quadratic time.
 ///
-/// What is compared are the kept positions, side by side: where many share a vertex, as in a soup of triangles, they and
+/// Faces that share a vertex mostly lie close in a file, so that most vertices have an equal among the recent ones. The
+/// others go to a table. What is compared there are the kept positions, side by side: where many share a vertex, they and
 /// the table are small enough for the caches. Vertices go in batches, so that the memory that all of a batch need is
 /// fetched at once; nearly all are found where their search begins.
 fn exact(positions: &[DVec3], control: &mut Control<'_>) -> Result<Option<Welded>, Cancelled> {
     const BATCH: usize = 64;
     let mut table = Table::new((positions.len() / 2).max(4 * BATCH));
+    let mut recent = Recent::new(positions.len());
     let mut of = Vec::with_capacity(positions.len());
     // A closed surface has half as many vertices as triangles: room for a soup of those, of which no more is touched than
     // is used.
     let mut kept: Vec<DVec3> = Vec::with_capacity(positions.len() / 5);
     let mut sources = Vec::with_capacity(positions.len() / 5);
-    let (mut homes, mut numbers) = ([0; BATCH], [NONE; BATCH]);
+    let (mut hashes, mut equals) = ([0; BATCH], [0; BATCH]);
+    // Those without a recent equal: where in the batch, where in the table, the number of what is there.
+    let mut alone = [(0, 0, NONE); BATCH];
     for batch in positions.chunks(BATCH) {
         let done = of.len();
         tick(control, done, positions.len())?;
         if 2 * (kept.len() + BATCH) > table.slots.len() && table.grow(&kept).is_none() {
             return Ok(None);
         }
-        for ((&p, home), number) in batch.iter().zip(&mut homes).zip(&mut numbers) {
-            *home = table.home(p);
+        batch.iter().zip(&mut hashes).for_each(|(&p, h)| *h = hash(bits(p)));
+        let mut count = 0;
+        for (i, ((p, &hash), equal)) in batch.iter().zip(&hashes).zip(&mut equals).enumerate() {
+            let own = (done + i) as u32;
+            let before = recent.replace(hash, own);
+            let q = &positions[before as usize];
+            let is_equal = (before != own) & (q.x == p.x) & (q.y == p.y) & (q.z == p.z);
+            *equal = if is_equal { before } else { own };
+            alone[count].0 = i;
+            count += usize::from(!is_equal);
+        }
+        for (i, home, number) in &mut alone[..count] {
+            *home = table.home(hashes[*i]);
             *number = table.slots[*home];
         }
         let last = kept.len().saturating_sub(1);
-        for (&p, number) in batch.iter().zip(&mut numbers) {
+        for (i, _, number) in &mut alone[..count] {
             // Where nothing is in the slot, the last kept vertex is as good as any.
             let j = (*number as usize).wrapping_sub(1).min(last);
+            let p = batch[*i];
             let same = kept.get(j).is_some_and(|q| (q.x == p.x) & (q.y == p.y) & (q.z == p.z));
             *number = if same { j as u32 } else { NONE };
         }
-        for (i, (&p, number)) in batch.iter().zip(&mut numbers).enumerate() {
-            if *number != NONE || !p.is_finite() {
-                continue;
-            }
-            *number = match table.find(p, homes[i], &kept) {
-                Some(Ok(number)) => number,
-                Some(Err(slot)) => {
-                    kept.push(p);
-                    sources.push((done + i) as u32);
-                    table.slots[slot] = kept.len() as u32;
-                    kept.len() as u32 - 1
-                }
-                None => return Ok(None),
+        of.resize(done + batch.len(), NONE);
+        for &(i, home, number) in &alone[..count] {
+            let p = batch[i];
+            of[done + i] = match number {
+                NONE if !p.is_finite() => NONE,
+                NONE => match table.find(p, home, &kept) {
+                    Some(Ok(number)) => number,
+                    Some(Err(slot)) => {
+                        kept.push(p);
+                        sources.push((done + i) as u32);
+                        table.slots[slot] = kept.len() as u32;
+                        kept.len() as u32 - 1
+                    }
+                    None => return Ok(None),
+                },
+                number => number,
             };
         }
-        of.extend_from_slice(&numbers[..batch.len()]);
+        // Of equals the earlier one has its number.
+        for (v, &equal) in (done..).zip(&equals[..batch.len()]) {
+            of[v] = of[equal as usize];
+        }
     }
     kept.shrink_to_fit();
     sources.shrink_to_fit();

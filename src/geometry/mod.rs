@@ -10,6 +10,7 @@ pub(crate) mod slivers;
 pub(crate) mod smooth;
 pub(crate) mod subdivide;
 pub(crate) mod transform;
+pub(crate) mod triangles;
 pub(crate) mod triangulate;
 pub(crate) mod weld;
 
@@ -35,6 +36,13 @@ pub(crate) fn unit_scale(points: impl Iterator<Item = DVec3>) -> f64 {
 pub(crate) fn is_tame(mut points: impl Iterator<Item = DVec3>) -> bool {
     let is_tame = |x: f64| x == 0.0 || (x.abs() > 1e-60) & (x.abs() < 1e60);
     points.all(|p| is_tame(p.x) & is_tame(p.y) & is_tame(p.z))
+}
+
+/// The same of many points, several at once.
+pub(crate) fn are_tame(points: &[DVec3]) -> bool {
+    let is_tame = |x: f64| (x == 0.0) | ((x.abs() > 1e-60) & (x.abs() < 1e60));
+    let tame = |p: &DVec3| is_tame(p.x) & is_tame(p.y) & is_tame(p.z);
+    points.chunks(64).all(|block| block.iter().fold(true, |all, p| all & tame(p)))
 }
 
 /// The direction of a vector, or zero if it has none; safe for any length.

@@ -1,6 +1,7 @@
 //! Vertex and face normals.
 
-use super::{direction, distance, is_tame, unit_scale};
+use super::triangles::{Faces, normalize};
+use super::{are_tame, direction, distance, is_tame, unit_scale};
 use crate::mesh::read;
 use crate::{FaceKey, Mesh, Polygons, VertexKey};
 use glam::DVec3;
@@ -100,7 +101,7 @@ impl Sums {
     }
 
     fn directions(mut self) -> Vec<DVec3> {
-        self.sums.iter_mut().for_each(|sum| *sum = direction(*sum));
+        normalize(&mut self.sums);
         self.sums
     }
 }
@@ -159,8 +160,8 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn compute_normals(&mut self, weight: NormalWeight) {
-        let sums = self.normal_sums(weight, |_, _| {});
-        self.replace_normals(sums.directions());
+        let (at_vertices, _) = self.normals_by(weight, false);
+        self.replace_normals(at_vertices);
     }
 
     /// As [`compute_normals`](Self::compute_normals), and gives the unit normals of all faces as
@@ -176,16 +177,53 @@ impl Mesh {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn compute_all_normals(&mut self, weight: NormalWeight) -> Vec<DVec3> {
-        let mut at_faces = Vec::with_capacity(self.face_count());
         let in_order = self.faces.is_in_user_order();
-        let normal_of = self.triangle_rule();
+        let (at_vertices, at_faces) = self.normals_by(weight, in_order);
+        self.replace_normals(at_vertices);
+        if in_order { at_faces } else { self.face_normals() }
+    }
+
+    /// The normals of vertex slots, and if they are wanted those of faces in the user's order.
+    fn normals_by(&self, weight: NormalWeight, with_faces: bool) -> (Vec<DVec3>, Vec<DVec3>) {
+        let mut at_faces = Vec::with_capacity(if with_faces { self.face_count() } else { 0 });
+        let count = self.vertices.slot_count();
+        let is_tame = self.is_tame();
+        if is_tame && weight == NormalWeight::Area {
+            let mut sums = Sums { scale: 1.0, weight, sums: vec![DVec3::ZERO; count] };
+            let mut polygon = Vec::new();
+            let take = |faces: Faces<'_>| match faces {
+                Faces::Triangles(triangles) => {
+                    triangles.add_areas(&mut sums.sums);
+                    if with_faces {
+                        triangles.push_normals(&mut at_faces);
+                    }
+                }
+                Faces::Mixed(slots) => {
+                    for &f in slots {
+                        polygon.clear();
+                        let corners = self.loop_slots(self.face_halfedge[f as usize]);
+                        polygon.extend(corners.map(|h| self.origin[h as usize]));
+                        sums.add(&self.positions, &polygon);
+                        if with_faces {
+                            at_faces.push(self.normal_of_face(f));
+                        }
+                    }
+                }
+            };
+            if self.faces.is_in_user_order() {
+                self.in_blocks(self.faces.live(), take);
+            } else {
+                self.in_blocks(self.faces.in_user_order().into_iter(), take);
+            }
+            return (sums.directions(), at_faces);
+        }
+        let normal_of = if is_tame { tame_triangle_normal } else { triangle_normal };
         let sums = self.normal_sums(weight, |f, triangle| {
-            if in_order {
+            if with_faces {
                 at_faces.push(triangle.map_or_else(|| self.normal_of_face(f), normal_of));
             }
         });
-        self.replace_normals(sums.directions());
-        if in_order { at_faces } else { self.face_normals() }
+        (sums.directions(), at_faces)
     }
 
     /// The normals of faces summed at vertex slots. `each` is called with every face, in the user's order, and its corners if
@@ -235,19 +273,21 @@ impl Mesh {
     /// ```
     pub fn face_normals(&self) -> Vec<DVec3> {
         let mut normals = Vec::with_capacity(self.face_count());
-        let normal_of = self.triangle_rule();
-        self.faces.live().for_each(|f| {
-            let triangle = self.triangle_slots(self.face_halfedge[f as usize]);
-            let points = triangle.map(|halfedges| halfedges.map(|h| self.at(h)));
-            normals.push(points.map_or_else(|| self.normal_of_face(f), normal_of));
-        });
+        if self.is_tame() {
+            self.in_blocks(self.faces.live(), |faces| match faces {
+                Faces::Triangles(triangles) => triangles.push_normals(&mut normals),
+                Faces::Mixed(slots) => normals.extend(slots.iter().map(|&f| self.normal_of_face(f))),
+            });
+        } else {
+            normals.extend(self.faces.live().map(|f| self.normal_of_face(f)));
+        }
         normals
     }
 
-    /// How the normals of triangles are found: without scaling where it changes no bit.
-    fn triangle_rule(&self) -> fn([DVec3; 3]) -> DVec3 {
-        let used = self.vertices.live().map(|v| self.positions[v as usize]);
-        if is_tame(used) { tame_triangle_normal } else { triangle_normal }
+    /// Whether all coordinates are tame.
+    fn is_tame(&self) -> bool {
+        // What dead vertices left behind may be anything.
+        are_tame(&self.positions) || is_tame(self.vertices.live().map(|v| self.positions[v as usize]))
     }
 
     /// Where a half-edge starts.
@@ -280,7 +320,7 @@ fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
 
 /// The same to the bit, if the coordinates are [tame](is_tame).
 #[inline]
-fn tame_triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+pub(super) fn tame_triangle_normal(corners: [DVec3; 3]) -> DVec3 {
     let [a, b, c] = corners;
     let sides = [b - a, c - b, a - c];
     let across = [sides[1], sides[2], sides[0]].map(|side| side.length_squared());
