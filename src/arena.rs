@@ -143,6 +143,16 @@ impl<K: Key> Arena<K> {
         self.ranks.is_empty()
     }
 
+    /// What stands for a live slot in the user's order: below what stands for those behind it.
+    #[inline]
+    pub(crate) fn rank(&self, slot: u32) -> u32 {
+        match self.ranks.get(slot as usize) {
+            None => slot,
+            Some(&u32::MAX) => 1 << 31 | slot,
+            Some(&rank) => rank,
+        }
+    }
+
     /// Whether the slots are `1..=len`, in the user's order.
     pub(crate) fn is_compact(&self) -> bool {
         self.ranks.is_empty() && self.slot_count() == self.len() + 1

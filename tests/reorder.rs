@@ -5,8 +5,9 @@ mod shapes;
 
 use meshwright::glam::{DVec2, DVec3, dvec2, dvec3};
 use meshwright::{
-    Attributes, Boundary, EdgeKey, FaceGroups, FaceKey, FillHolesOptions, GroupName, HalfedgeKey,
-    IndexedMesh, Mesh, Rule, Scheme, SmoothOptions, SubdivideOptions, UnweldOptions, VertexKey, WeldOptions,
+    Attributes, Boundary, ClosestOptions, EdgeKey, FaceGroups, FaceKey, FillHolesOptions, GroupName,
+    HalfedgeKey, IndexedMesh, Mesh, Rule, Scheme, SmoothOptions, SubdivideOptions, UnweldOptions, VertexKey,
+    WeldOptions,
 };
 use shapes::Noise;
 
@@ -177,6 +178,28 @@ fn what_is_done_to_a_mesh_laid_out_anew_is_what_is_done_to_the_old_one() {
         });
         assert_eq!(a, b, "{name}, holes");
     }
+}
+
+#[test]
+fn polygons_are_cut_as_they_were() {
+    // Diagonals of the same length, and neither in the surface: the cut goes from the lowest vertex.
+    let corners = [(1.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 1.0, 1.0), (1.0, 1.0, 0.0)];
+    let pool = shapes::pool(corners.map(|(x, y, z)| dvec3(x, y, z)).to_vec(), vec![vec![0, 1, 2, 3]]);
+    let mesh = shapes::mesh(&pool);
+    let near = near(&mesh);
+    let asked = dvec3(0.5, 0.5, 0.4);
+    let distance = |m: &Mesh| {
+        let found = m.index().closest_point(asked, ClosestOptions::default()).expect("asked well");
+        found.expect("a face").distance
+    };
+    assert_eq!(distance(&mesh), distance(&near));
+    let [a, b] = [&mesh, &near].map(|m| {
+        let mut m = m.clone();
+        let f = m.faces().next().expect("one");
+        m.triangulate_face(f).expect("four corners");
+        m.to_indexed()
+    });
+    assert_eq!(a, b);
 }
 
 #[test]

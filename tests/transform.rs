@@ -190,6 +190,9 @@ fn normals_turn_by_the_inverse_transpose_and_keep_their_length() {
     mesh.scale_axes(dvec3(3.0, 1.0, 1.0), DVec3::ZERO).expect("scaled");
     assert_eq!(mesh.normal(v), Some(DVec3::X * 5.0));
     assert_eq!(mesh.normal(mesh.vertices().nth(1).expect("there")), Some(DVec3::ZERO), "none stays none");
+    // The inverses of these factors are further apart than any two numbers.
+    mesh.scale_axes(dvec3(1e250, 1e-250, 1.0), DVec3::ZERO).expect("scaled");
+    assert_eq!(mesh.normal(v), Some(DVec3::X * 5.0));
     mesh.set_normal(v, DVec3::X * f64::MAX).expect("set");
     mesh.rotate_degrees(dvec3(1.0, 2.0, 3.0), 33.0, DVec3::ZERO).expect("turned");
     assert!(mesh.normal(v).expect("carried").is_finite());

@@ -22,6 +22,17 @@ pub(crate) struct Carried {
 }
 
 impl Carried {
+    /// Whether a column is one of these: what is written to it must be finite, whoever has a key.
+    pub(crate) fn holds(&self, kind: Kind, index: u32) -> bool {
+        let [first, second] = match kind {
+            Kind::Vertex => [self.normals.map(|c| c.index), self.colors.map(|c| c.index)],
+            Kind::Corner => [self.corner_normals.map(|c| c.index), self.uvs.map(|c| c.index)],
+            Kind::Edge => [None; 2],
+            Kind::Face => [self.groups.map(|c| c.index), None],
+        };
+        first == Some(index) || second == Some(index)
+    }
+
     /// Where the columns are.
     pub(crate) fn columns(&self) -> Vec<(Kind, u32)> {
         let on_vertices = [self.normals.map(|c| c.index), self.colors.map(|c| c.index)];

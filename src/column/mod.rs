@@ -87,7 +87,7 @@ impl Sealed for FaceKey {
 }
 
 /// The typed key of a column of `T` on elements with keys `K`. Valid on the mesh that made it and on its clones, until
-/// the column is removed; keys of another mesh are not detected unless the types differ.
+/// the column is removed; keys of another mesh are not detected unless the types differ, but none writes to attributes.
 pub struct Column<K, T> {
     pub(crate) index: u32,
     of: PhantomData<fn() -> (K, T)>,
@@ -213,7 +213,9 @@ impl Mesh {
 
     /// Removes a column and its values. Whether there was one.
     pub fn remove_column<K: ElementKey, T: Value>(&mut self, column: Column<K, T>) -> bool {
-        self.columns.store::<T>(K::KIND, column.index).is_some() && self.columns.remove(K::KIND, column.index)
+        !self.carried.holds(K::KIND, column.index)
+            && self.has_column(column)
+            && self.columns.remove(K::KIND, column.index)
     }
 
     /// Whether the mesh has the column.
@@ -253,6 +255,9 @@ impl Mesh {
         let slot = key.slot(self).ok_or(ColumnError::Missing)?;
         if K::KIND == Kind::Corner && self.face[slot as usize] == crate::matching::NONE {
             return Err(ColumnError::NoCorner(self.halfedge_key(slot)));
+        }
+        if self.carried.holds(K::KIND, column.index) {
+            return Err(ColumnError::NoColumn);
         }
         self.write_value(K::KIND, column.index, slot, value).ok_or(ColumnError::NoColumn)
     }

@@ -83,8 +83,8 @@ enum Bend {
     Negate,
     /// The linear part itself keeps lengths and angles.
     Rotate,
-    /// The inverse transpose of the linear part, up to a factor.
-    By(DMat3),
+    /// The inverse transpose of the linear part, up to a factor, of what is scaled along the axes first.
+    By(DMat3, DVec3),
 }
 
 impl Turning {
@@ -102,9 +102,10 @@ impl Turning {
         Self { linear, normals: Bend::Rotate, flips: false }
     }
 
-    /// A linear map with its inverse transpose, which counts up to a positive factor, and whether it mirrors.
-    pub(crate) fn affine(linear: DMat3, inverse_transpose: DMat3, flips: bool) -> Self {
-        Self { linear, normals: Bend::By(inverse_transpose), flips }
+    /// A linear map with its inverse transpose, which counts up to a positive factor and is that of what is scaled first by
+    /// powers of two along the axes (their product might have no number), and whether it mirrors.
+    pub(crate) fn affine(linear: DMat3, inverse_transpose: DMat3, scales: DVec3, flips: bool) -> Self {
+        Self { linear, normals: Bend::By(inverse_transpose, scales), flips }
     }
 
     /// The linear part of the map; the identity where only the winding reverses.
@@ -127,7 +128,11 @@ impl Turning {
             Bend::Keep => normal,
             Bend::Negate => -normal,
             Bend::Rotate => self.linear * normal,
-            Bend::By(m) => direction(*m * direction(normal)) * distance(DVec3::ZERO, normal),
+            Bend::By(m, scales) => {
+                let scaled = direction(normal) * *scales;
+                let scaled = scaled * unit_scale(std::iter::once(scaled));
+                direction(*m * scaled) * distance(DVec3::ZERO, normal)
+            }
         };
         // As long as the largest numbers, it loses its length, not its direction.
         if turned.is_finite() { turned } else { direction(self.normal(direction(normal))) }

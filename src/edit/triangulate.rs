@@ -88,7 +88,8 @@ impl Mesh {
         let corners: SmallVec<[u32; 8]> =
             self.loop_slots(self.face_halfedge[slot as usize]).map(|h| self.origin[h as usize]).collect();
         let mut rule = Triangulator::default();
-        let triangles = rule.triangulate(&corners, |v| self.positions[v as usize]);
+        let triangles =
+            rule.triangulate_by(&corners, |v| self.vertices.rank(v), |v| self.positions[v as usize]);
         // The rule may read the face backwards; an ear's tip is the corner between its neighbours in what is left.
         let ears = in_order(&corners, triangles);
         match self.blocked(&ears) {

@@ -69,7 +69,7 @@ fn rodrigues(axis: DVec3, degrees: f64) -> DMat3 {
 }
 
 /// The inverse transpose up to a positive factor, and whether the map mirrors; `None` if it is singular.
-fn inverse_transpose(m: &DMat3) -> Option<(DMat3, bool)> {
+fn inverse_transpose(m: &DMat3) -> Option<(DMat3, DVec3, bool)> {
     // Every column is brought to about one, so that small maps are not taken for singular ones. With M = N S, the
     // inverse transpose is that of N, its columns scaled alike by S.
     let scales = [m.x_axis, m.y_axis, m.z_axis].map(|c| unit_scale(std::iter::once(c)));
@@ -79,15 +79,14 @@ fn inverse_transpose(m: &DMat3) -> Option<(DMat3, bool)> {
         return None;
     }
     let sign = determinant.signum();
-    let largest = scales.iter().fold(0.0f64, |a, &b| a.max(b));
-    let [sx, sy, sz] = scales.map(|s| s / largest * sign);
-    Some((DMat3::from_cols(y.cross(z) * sx, z.cross(x) * sy, x.cross(y) * sz), sign < 0.0))
+    let cofactors = DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign);
+    Some((cofactors, DVec3::from(scales), sign < 0.0))
 }
 
 /// What a linear map does to vectors; `None` if it is singular.
 fn affine(m: &DMat3) -> Option<Turning> {
-    let (bend, mirrors) = inverse_transpose(m)?;
-    Some(Turning::affine(*m, bend, mirrors))
+    let (bend, scales, mirrors) = inverse_transpose(m)?;
+    Some(Turning::affine(*m, bend, scales, mirrors))
 }
 
 impl Mesh {
@@ -283,7 +282,7 @@ mod tests {
     #[test]
     fn a_small_map_is_not_singular_and_a_flat_one_is() {
         let small = DMat3::from_diagonal(DVec3::new(1e-300, -1e-300, 1e-200));
-        assert!(inverse_transpose(&small).is_some_and(|(_, mirrors)| mirrors));
+        assert!(inverse_transpose(&small).is_some_and(|(_, _, mirrors)| mirrors));
         assert!(inverse_transpose(&DMat3::from_cols(DVec3::X, DVec3::X * 2.0, DVec3::Z)).is_none());
     }
 }

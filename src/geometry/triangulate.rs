@@ -29,12 +29,22 @@ impl Triangulator {
     /// The triangles of a polygon, as its corners' vertices and in its winding: `n - 2` of them, none below three
     /// corners. O(n log n) on polygons from life; at worst a fixed multiple of n, then the rest is cut as a fan.
     pub(crate) fn triangulate(&mut self, corners: &[u32], at: impl Fn(u32) -> DVec3) -> &[[u32; 3]] {
+        self.triangulate_by(corners, |v| v, at)
+    }
+
+    /// [`triangulate`](Self::triangulate) where vertices are low by what stands for them in some order.
+    pub(crate) fn triangulate_by(
+        &mut self,
+        corners: &[u32],
+        order: impl Fn(u32) -> u32,
+        at: impl Fn(u32) -> DVec3,
+    ) -> &[[u32; 3]] {
         self.triangles.clear();
         match *corners {
             [] | [_] | [_, _] => {}
             [a, b, c] => self.triangles.push([a, b, c]),
             _ => {
-                let cycle = Cycle::of(corners);
+                let cycle = Cycle::by(corners, order);
                 self.cycle.clear();
                 self.cycle.extend(cycle.iter());
                 let scale = unit_scale(corners.iter().map(|&v| at(v)));

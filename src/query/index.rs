@@ -118,7 +118,8 @@ impl Mesh {
             edges.clear();
             edges.extend((0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()])));
             edges.sort_unstable();
-            for t in rule.triangulate(&corners, |v| self.positions[v as usize]) {
+            for t in rule.triangulate_by(&corners, |v| self.vertices.rank(v), |v| self.positions[v as usize])
+            {
                 let cut = |i: usize| {
                     let is_edge = edges.binary_search(&(t[i], t[(i + 1) % 3])).is_ok();
                     t[i] | if is_edge { 0 } else { CUT }

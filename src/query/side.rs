@@ -39,7 +39,8 @@ impl MeshIndex<'_> {
                 whole = [[a, b, c]];
                 whole.iter()
             } else {
-                rule.triangulate(&polygon, |v| mesh.positions[v as usize]).iter()
+                rule.triangulate_by(&polygon, |v| mesh.vertices.rank(v), |v| mesh.positions[v as usize])
+                    .iter()
             };
             let normal = |t: &[u32; 3]| match (of, t.iter().position(|v| *v == of[0])) {
                 ([_], Some(i)) => {

@@ -133,11 +133,11 @@ impl Lists {
 
     fn get(&self, i: usize) -> &[u32] {
         if self.starts.is_empty() {
-            self.items.get(i..i + 1).unwrap_or(&[])
-        } else if i + 1 < self.starts.len() {
-            &self.items[self.starts[i] as usize..self.starts[i + 1] as usize]
-        } else {
-            &[]
+            return self.items.get(i).map_or(&[], std::slice::from_ref);
+        }
+        match self.starts.get(i..).and_then(<[u32]>::first_chunk) {
+            Some(&[from, to]) => &self.items[from as usize..to as usize],
+            None => &[],
         }
     }
 
@@ -387,6 +387,8 @@ mod tests {
         assert_eq!(split.new_of(1), &[1, 2]);
         assert_eq!(split.old_of(2), &[1]);
         assert_eq!(split.new_of(9), &[] as &[u32]);
+        assert_eq!((split.old_of(3), split.new_of(usize::MAX)), (&[] as &[u32], &[] as &[u32]));
+        assert_eq!(Relation::identity(2).old_of(usize::MAX), &[] as &[u32]);
     }
 
     #[test]

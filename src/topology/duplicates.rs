@@ -51,9 +51,14 @@ pub(crate) struct Cycle<'a> {
 
 impl<'a> Cycle<'a> {
     pub(crate) fn of(corners: &'a [u32]) -> Self {
+        Self::by(corners, |v| v)
+    }
+
+    /// Low by what stands for a vertex in some order.
+    pub(crate) fn by(corners: &'a [u32], order: impl Fn(u32) -> u32) -> Self {
         let n = corners.len();
-        let at = (0..n).min_by_key(|&i| corners[i]).unwrap_or(0);
-        let down = n > 0 && corners[(at + n - 1) % n] < corners[(at + 1) % n];
+        let at = (0..n).min_by_key(|&i| order(corners[i])).unwrap_or(0);
+        let down = n > 0 && order(corners[(at + n - 1) % n]) < order(corners[(at + 1) % n]);
         Self { corners, at, down }
     }
 

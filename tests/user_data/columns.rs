@@ -148,3 +148,14 @@ fn carried_normals_are_mixed_and_stay_of_unit_length() {
     mesh.set_position(new.vertex, DVec3::ONE).expect("finite");
     assert_eq!(mesh.normal(new.vertex), moved);
 }
+
+#[test]
+fn a_column_key_of_another_mesh_does_not_reach_attributes() {
+    let key = two_squares().add_vertex_column(DVec3::ZERO, Rule::keep());
+    let mut mesh = two_squares();
+    let v = mesh.vertices().next().expect("six");
+    mesh.set_normal(v, DVec3::X).expect("finite");
+    assert_eq!(mesh.set_value(key, v, DVec3::NAN), Err(ColumnError::NoColumn));
+    assert!(!mesh.remove_column(key));
+    assert_eq!((mesh.validate(), mesh.normal(v)), (Ok(()), Some(DVec3::X)));
+}

@@ -29,7 +29,9 @@ impl Apexes {
             corners.clear();
             corners.extend(sides.iter().map(|&h| mesh.origin[h as usize]));
             corners.iter().enumerate().for_each(|(i, &v)| corner_of[v as usize] = i);
-            for &[a, b, c] in rule.triangulate(&corners, |v| mesh.positions[v as usize]) {
+            for &[a, b, c] in
+                rule.triangulate_by(&corners, |v| mesh.vertices.rank(v), |v| mesh.positions[v as usize])
+            {
                 for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
                     let i = corner_of[from as usize];
                     if corners[(i + 1) % n] == to {
