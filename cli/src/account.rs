@@ -76,10 +76,7 @@ fn kind(account: &Account, kind: Kind) -> Vec<String> {
             account.steps.iter().find(|s| s.step == Step::FindIntersections).map_or(count, |s| s.changed)
         }
         // One stands for all.
-        Kind::UnsearchedFaces
-        | Kind::UnsearchedEdges
-        | Kind::UnsearchedHoles
-        | Kind::HastyFillers => {
+        Kind::UnsearchedFaces | Kind::UnsearchedEdges | Kind::UnsearchedHoles | Kind::HastyFillers => {
             return of_kind()
                 .map(|r| format!("{} {what}", counted(r.extent.map_or(1, |e| e.elements), noun)))
                 .collect();

@@ -102,7 +102,8 @@ pub(super) fn propose(
         Bounds { folded: polygons.len() / 500, more: matching.more.len() }
     };
     let before = naked.len();
-    let laid_before = duplicate_faces(polygons, &matching).len();
+    let laid_before: usize =
+        duplicate_faces(polygons, &matching).iter().map(|d| polygons[d.0 as usize].len()).sum();
     drop(matching);
     if naked.len() < 2 {
         return Ok((proposed, None));
@@ -123,10 +124,12 @@ pub(super) fn propose(
         for t in [most, most * 0.7, gap.last * 1.01, gap.last * 0.5, gap.last * 0.25] {
             proposed.tried += 1;
             let trial = try_weld(positions, polygons, t, control)?;
-            let joins = before.saturating_sub(trial.naked) >= gap.promised / 4;
-            let lays = trial.laid > laid_before + polygons.len() / 10;
+            // Edges that went with a face that was laid on another were not joined.
+            let laid = trial.laid.saturating_sub(laid_before);
+            let joins = before.saturating_sub(trial.naked + laid) >= gap.promised / 4;
+            let lays = laid > polygons.corners().len() / 10;
             if trial.folded <= may.folded && trial.more <= may.more {
-                if joins && trial.naked < before {
+                if joins && !lays && trial.naked < before {
                     taken.push((trial.naked, t, trial.merged));
                     // Less than nearly as many could not leave nearly as few naked edges.
                     enough = gap.count - gap.count / 50;
@@ -168,7 +171,7 @@ struct Trial {
     folded: usize,
     /// Third and later faces of edges.
     more: usize,
-    /// Faces that come to lie on others, or do already.
+    /// Corners of faces that come to lie on others, or do already.
     laid: usize,
     /// Naked edges that are left without those.
     naked: usize,
@@ -202,9 +205,9 @@ fn try_weld(
         // A fin that is laid on another joins no surface, and one large polygon that is there twice has as many uses too
         // many as it has edges.
         let single = once(positions.len(), &left);
-        laid = left.len() - single.len();
+        laid = left.corners().len() - single.corners().len();
         // Where many are, the weld has laid them on each other.
-        if laid > polygons.len() / 10 {
+        if left.len() - single.len() > polygons.len() / 10 {
             more = Chains::new(positions.len(), &left).more_uses();
         }
         left = single;

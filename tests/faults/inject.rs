@@ -404,8 +404,9 @@ pub(crate) fn touched_at_an_edge(truth: &Truth, noise: &mut Noise) -> (Truth, Po
     let mut sides: BTreeMap<[u32; 2], Vec<(DVec3, DVec3)>> = BTreeMap::new();
     for face in truth.pool.polygons().iter() {
         let corner = |i: usize| at(face[i % face.len()]);
-        let normal =
-            (1..face.len() - 1).map(|i| (corner(i) - corner(0)).cross(corner(i + 1) - corner(0))).sum::<DVec3>();
+        let normal = (1..face.len() - 1)
+            .map(|i| (corner(i) - corner(0)).cross(corner(i + 1) - corner(0)))
+            .sum::<DVec3>();
         let normal = normal.normalize();
         for i in 0..face.len() {
             let (a, b) = (face[i], face[(i + 1) % face.len()]);
@@ -423,7 +424,8 @@ pub(crate) fn touched_at_an_edge(truth: &Truth, noise: &mut Noise) -> (Truth, Po
     let size = p.distance(q).min(0.05 * truth.diagonal) * 0.5;
     let middle = p.lerp(q, 0.5);
     let corners = vec![p, q, middle + (up + across * 0.5) * size, middle + (up - across * 0.5) * size];
-    let mut other = crate::shapes::pool(corners, vec![vec![0, 1, 2], vec![1, 0, 3], vec![2, 1, 3], vec![0, 2, 3]]);
+    let mut other =
+        crate::shapes::pool(corners, vec![vec![0, 1, 2], vec![1, 0, 3], vec![2, 1, 3], vec![0, 2, 3]]);
     if Mesh::build(&other).expect("a manifold").closed().expect("closed").volume() < 0.0 {
         other = other.reversed();
     }
