@@ -40,7 +40,7 @@ impl<'s, 'p> Classes<'s, 'p> {
             size: vec![1; own.len()],
             kept: own,
             budget: 32 * seams.edges.len() as u64 + (1 << 22),
-            looks: 24 * seams.edges.len() + (1 << 22),
+            looks: 64 * seams.edges.len() + (1 << 22),
             unsearched: (0, None),
             around: Default::default(),
         }
