@@ -118,13 +118,16 @@ struct NewCorner {
     vertex: u32,
 }
 
+/// A number of naked edges, and the corner of the first.
+type Unsearched = Option<(usize, u32)>;
+
 /// What is to be done, if anything; and how many naked edges were not searched around to the end, with the corner of the first.
 fn plan(
     pool: &Pool<'_>,
     matching: &Matching,
     tolerance: f64,
     control: &mut Control<'_>,
-) -> Result<(Option<Plan>, Option<(usize, u32)>), Cancelled> {
+) -> Result<(Option<Plan>, Unsearched), Cancelled> {
     if tolerance <= 0.0 {
         return Ok((None, None));
     }
