@@ -224,6 +224,7 @@ fn mixed_winding_is_unified_and_every_flip_recorded() {
 #[test]
 fn a_moebius_strip_is_cut_once_and_keeps_its_faces() {
     let outcome = cleaned(&soup(&shapes::moebius(12)));
+    assert_eq!(outcome.report.count(Kind::FlippedFace), 0, "wound alike but at one edge, which is cut");
     assert_eq!(outcome.report.count(Kind::CutEdge), 1);
     assert_eq!(outcome.value.face_count(), 12);
     assert_eq!(outcome.value.boundary_loops().len(), 1);

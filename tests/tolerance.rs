@@ -154,3 +154,19 @@ fn a_large_polygon_that_is_there_twice_does_not_speak_against_a_tolerance() {
     let welded = index(&soup, Weld::Auto).expect("never refused").value;
     assert_eq!(welded.vertex_count(), truth.vertex_count());
 }
+
+#[test]
+fn fins_around_one_edge_are_not_laid_on_each_other() {
+    let mut noise = Noise(5);
+    for n in [30u32, 300, 3000] {
+        let even = |i: u32| (f64::from(i) / f64::from(n) * std::f64::consts::TAU).sin_cos();
+        let around = (0..n).map(even).map(|(s, c)| dvec3(c, s, 0.5)).collect::<Vec<_>>();
+        let anywhere = (0..n).map(|_| dvec3(noise.unit(), noise.unit(), noise.unit())).collect();
+        for apexes in [around, anywhere] {
+            let points = [DVec3::ZERO, DVec3::Z].into_iter().chain(apexes).collect();
+            let fins: meshwright::Polygons = (0..n).map(|i| [0, 1, i + 2]).collect();
+            let proposed = propose_tolerance_with_reasons(&PolygonSoup::new(points, fins));
+            assert_eq!((proposed.tolerance, proposed.reach), (0.0, 0.0), "{n}: {proposed:?}");
+        }
+    }
+}

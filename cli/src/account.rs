@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 const SHOWN: usize = 3;
 
 /// What is said of things that were found and left.
-const LEFT: [Kind; 12] = [
+const LEFT: [Kind; 14] = [
     Kind::HoleWithIslands,
     Kind::HemmedInHole,
     Kind::OutsideOfSheet,
@@ -22,6 +22,8 @@ const LEFT: [Kind; 12] = [
     Kind::CrossingShell,
     Kind::SelfIntersection,
     Kind::UnsearchedFaces,
+    Kind::UnsearchedEdges,
+    Kind::UnsearchedHoles,
     Kind::SharpEdge,
 ];
 
@@ -74,7 +76,7 @@ fn kind(account: &Account, kind: Kind) -> Vec<String> {
             account.steps.iter().find(|s| s.step == Step::FindIntersections).map_or(count, |s| s.changed)
         }
         // One stands for all.
-        Kind::UnsearchedFaces | Kind::HastyFillers => {
+        Kind::UnsearchedFaces | Kind::UnsearchedEdges | Kind::UnsearchedHoles | Kind::HastyFillers => {
             return of_kind()
                 .map(|r| format!("{} {what}", counted(r.extent.map_or(1, |e| e.elements), noun)))
                 .collect();

@@ -100,6 +100,10 @@ pub(crate) fn described(kind: Kind) -> (&'static str, &'static str) {
         Kind::Debris => ("face", "of small parts, dropped"),
         Kind::FilledHole => ("hole", "filled"),
         Kind::HastyFillers => ("filler", "of little area but not the least, as there were so many"),
+        Kind::UnsearchedHoles => ("hole", "not looked through for islands to the end, as there were so many"),
+        Kind::UnsearchedEdges => {
+            ("edge", "around which not all was looked at: there may be more to be stitched")
+        }
         Kind::HoleWithIslands => ("hole", "with islands, left"),
         Kind::HemmedInHole => ("hole", "that no filler fits, left"),
         Kind::OutsideOfSheet => ("hole", "as large as the part around it, left"),

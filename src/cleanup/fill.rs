@@ -6,7 +6,8 @@ use crate::{FillHolesError, FillHolesOptions, FillMethod, FilledHoles, HalfedgeK
 
 /// Fills holes: [`Mesh::fill_holes`] with an account. A record for each hole, filled or left, with its number of edges and
 /// the area of what fills it; it names the vertex of the loop that comes first, in the numbers of the mesh before. If there
-/// were too many for the least area ([`exact_cost`](FillHolesOptions::exact_cost)), one record more tells how many.
+/// were too many for the least area ([`exact_cost`](FillHolesOptions::exact_cost)), or to be
+/// [searched for islands](FilledHoles::unsearched), one record more tells how many.
 ///
 /// # Errors
 /// [`FillHolesError`]; nothing has changed then.
@@ -66,7 +67,12 @@ pub(super) fn fill_holes_of(
         let record = Record::new(Step::FillHoles, Kind::HastyFillers, at(first.halfedge), Some(first.place));
         record.sized(1 + hasty.count(), 0.0)
     });
-    let records = filled.chain(left).chain(hasty).collect();
+    let unsearched = found.filled.first().filter(|_| found.unsearched > 0).map(|first| {
+        let record =
+            Record::new(Step::FillHoles, Kind::UnsearchedHoles, at(first.halfedge), Some(first.place));
+        record.sized(found.unsearched, 0.0)
+    });
+    let records = filled.chain(left).chain(hasty).chain(unsearched).collect();
     let summary = StepSummary::new(Step::FillHoles, found.filled.len());
     Ok(before.outcome(mesh, found, summary, records))
 }

@@ -41,8 +41,8 @@ const MOST_ROUNDS: i32 = 8;
 /// How many pairs of faces that pass through each other are listed.
 const MOST_LISTED: usize = 10_000;
 
-/// So many pairs of faces, and some for each face, are held against each other: tens of times what files from life take.
-const MOST_TESTS: usize = 1 << 21;
+/// So many pairs of faces, and some for each face, are held against each other: many times what files from life take.
+const MOST_TESTS: usize = 1 << 20;
 
 /// Runs the steps that make a solid.
 pub(super) fn solidify(
@@ -66,7 +66,7 @@ pub(super) fn solidify(
             break;
         }
     }
-    let max_tests = MOST_TESTS + 16 * stage.mesh.face_count();
+    let max_tests = MOST_TESTS + 8 * stage.mesh.face_count();
     let hook = control.part(0.85, 0.97);
     let options = SelfIntersectionOptions { max_listed: MOST_LISTED, max_tests, control: hook };
     let found = find_intersections(&stage.mesh, options)?;

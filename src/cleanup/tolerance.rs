@@ -38,12 +38,16 @@ pub struct ProposedTolerance {
 /// is taken if it folds no more than one face in five hundred, makes no new edge of three or more faces, joins at least a
 /// quarter of the naked edges that have such a distance, and leaves as few of them as a greater one, but for one in a
 /// hundred. Where faces do not share vertices yet, needles, fins and faces that are there twice show only in the weld: there
-/// one face in 25 may fold, and third and later faces of edges may be up to a tenth of the naked edges. A file without
-/// naked edges gets 0, and so does one whose boundary is meant.
+/// one face in 25 may fold, and third and later faces of edges may be up to a tenth of the naked edges. Faces that a weld lays
+/// on each other join nothing. A file without naked edges gets 0, and so does one whose boundary is meant.
 ///
 /// What it asks of the distances up to a gap and behind the one before: no more than a tenth of the length of the edges
 /// they join, for most, and a thousandth of the box's diagonal; if two in five of all edges are such, no more than half of
 /// the length of the edges.
+///
+/// Only whole edges are asked. In a file that is exact otherwise, T-junctions that lie farther off their edges than the rounding
+/// of single precision, which [`clean`](super::clean) bridges anyway, speak for no tolerance: they stay open and on record,
+/// unless one is given.
 ///
 /// O(n log n) in the corners; a few welds.
 ///
@@ -98,6 +102,8 @@ pub(super) fn propose(
         Bounds { folded: polygons.len() / 500, more: matching.more.len() }
     };
     let before = naked.len();
+    let laid_before: usize =
+        duplicate_faces(polygons, &matching).iter().map(|d| polygons[d.0 as usize].len()).sum();
     drop(matching);
     if naked.len() < 2 {
         return Ok((proposed, None));
@@ -117,16 +123,19 @@ pub(super) fn propose(
         let most = gap.tolerance();
         for t in [most, most * 0.7, gap.last * 1.01, gap.last * 0.5, gap.last * 0.25] {
             proposed.tried += 1;
-            let trial = try_weld(positions, polygons, t, may, control)?;
-            let joins = before.saturating_sub(trial.naked) >= gap.promised / 4;
+            let trial = try_weld(positions, polygons, t, control)?;
+            // Edges that went with a face that was laid on another were not joined.
+            let laid = trial.laid.saturating_sub(laid_before);
+            let joins = before.saturating_sub(trial.naked + laid) >= gap.promised / 4;
+            let lays = laid > polygons.corners().len() / 10;
             if trial.folded <= may.folded && trial.more <= may.more {
-                if joins && trial.naked < before {
+                if joins && !lays && trial.naked < before {
                     taken.push((trial.naked, t, trial.merged));
                     // Less than nearly as many could not leave nearly as few naked edges.
                     enough = gap.count - gap.count / 50;
                     break;
                 }
-            } else if t == most {
+            } else if t == most && !lays {
                 // Of a soup, a weld makes a surface, but for some faces.
                 let makes_surface = joins && trial.folded <= polygons.len() / 4 && trial.more <= before / 4;
                 if !gap.is_soup || makes_surface {
@@ -162,7 +171,9 @@ struct Trial {
     folded: usize,
     /// Third and later faces of edges.
     more: usize,
-    /// Naked edges that are left.
+    /// Corners of faces that come to lie on others, or do already.
+    laid: usize,
+    /// Naked edges that are left without those.
     naked: usize,
     /// What vertices are merged into.
     merged: Vec<u32>,
@@ -173,7 +184,6 @@ fn try_weld(
     positions: &[DVec3],
     polygons: &Polygons,
     tolerance: f64,
-    may: Bounds,
     control: &mut Control<'_>,
 ) -> Result<Trial, Cancelled> {
     control.report("propose a tolerance", 0.0)?;
@@ -190,19 +200,21 @@ fn try_weld(
         }
     }
     let folded = polygons.len() - left.len();
-    let mut chains = Chains::new(positions.len(), &left);
-    if folded <= may.folded && chains.more_uses() > may.more {
-        // One large polygon that is there twice has as many uses too many as it has edges.
-        drop(chains);
+    let (mut more, mut laid) = (0, 0);
+    if folded <= polygons.len() / 4 {
+        // A fin that is laid on another joins no surface, and one large polygon that is there twice has as many uses too
+        // many as it has edges.
         let single = once(positions.len(), &left);
+        laid = left.corners().len() - single.corners().len();
         // Where many are, the weld has laid them on each other.
-        if left.len() - single.len() <= polygons.len() / 10 {
-            left = single;
+        if left.len() - single.len() > polygons.len() / 10 {
+            more = Chains::new(positions.len(), &left).more_uses();
         }
-        chains = Chains::new(positions.len(), &left);
+        left = single;
     }
-    let more = chains.more_uses();
-    Ok(Trial { folded, more, naked: chains.into_pairing().open.len(), merged })
+    let chains = Chains::new(positions.len(), &left);
+    more = more.max(chains.more_uses());
+    Ok(Trial { folded, more, laid, naked: chains.into_pairing().open.len(), merged })
 }
 
 /// The faces without those that are there already.

@@ -63,6 +63,9 @@ named! {
         StitchedEdge = "stitched_edge",
         /// A vertex that lay within another face's edge, within the tolerance; the edge was cut there.
         TJunction = "t_junction",
+        /// Boundary edges around which not all was looked at for what they might be stitched to, as so much lies there; one
+        /// stands for all.
+        UnsearchedEdges = "unsearched_edges",
         /// A sheet that hung on a surface at edges with three or more faces; its faces were dropped.
         Fin = "fin",
         /// A face with an edge that has no length; collapsed.
@@ -81,6 +84,8 @@ named! {
         FilledHole = "filled_hole",
         /// Holes filled ear by ear, with little area but not the least, as there were so many; one stands for all.
         HastyFillers = "hasty_fillers",
+        /// Holes that were not looked through for islands to the end, as there were so many; one stands for all.
+        UnsearchedHoles = "unsearched_holes",
         /// A hole with islands, or several loops around one hole; left.
         HoleWithIslands = "hole_with_islands",
         /// A hole whose every filler would double an edge; left.

@@ -154,6 +154,7 @@ pub(crate) fn orient(polygons: &Polygons, face_of: &FaceOf, mates: &[u32]) -> Or
     let mut parent = vec![NONE; faces];
     let mut queue = VecDeque::new();
     let mut part = Vec::new();
+    let mut nearest = VecDeque::new();
     for seed in 0..faces {
         if parent[seed] != NONE {
             continue;
@@ -188,12 +189,35 @@ pub(crate) fn orient(polygons: &Polygons, face_of: &FaceOf, mates: &[u32]) -> Or
                 }
             }
         }
+        if let Some((f, g)) = cycle {
+            found.cycles.push(closed_walk(&parent, f, g));
+            // Somewhere windings conflict: so that no more is reversed than must be, not within a piece.
+            found.conflicts.truncate(conflicts);
+            part.iter().for_each(|&f| parent[f as usize] = NONE);
+            nearest.push_back((seed as u32, false));
+            while let Some((f, flip)) = nearest.pop_front() {
+                if parent[f as usize] != NONE {
+                    continue;
+                }
+                parent[f as usize] = f;
+                found.flip[f as usize] = flip;
+                let corners = polygons.starts()[f as usize]..polygons.starts()[f as usize + 1];
+                for (c, &m) in corners.clone().zip(&mates[corners]).filter(|(_, m)| **m != NONE) {
+                    let g = face_of.face(m as usize);
+                    match (parent[g as usize] == NONE, alike(c, m)) {
+                        (true, false) => nearest.push_front((g, flip)),
+                        (true, true) => nearest.push_back((g, !flip)),
+                        (false, alike) => {
+                            if found.flip[g as usize] != flip ^ alike {
+                                found.conflicts.push((c as u32).min(m));
+                            }
+                        }
+                    }
+                }
+            }
+        }
         if found.flip[keeper as usize] {
             part.iter().for_each(|&f| found.flip[f as usize] ^= true);
-        }
-        match cycle {
-            Some((f, g)) => found.cycles.push(closed_walk(&parent, f, g)),
-            None => found.conflicts.truncate(conflicts),
         }
     }
     found

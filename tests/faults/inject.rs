@@ -3,7 +3,7 @@
 use crate::shapes::{Noise, moebius, soup};
 use crate::truth::{Truth, sheet_of_quads};
 use meshwright::glam::{DVec3, dvec3};
-use meshwright::{IndexedMesh, PolygonSoup};
+use meshwright::{IndexedMesh, Mesh, PolygonSoup};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An edge with its two faces and its place in each.
@@ -34,6 +34,13 @@ impl Faulty {
             diagonal: truth.diagonal,
             jitter: 0.0,
         }
+    }
+
+    /// With faces that name shared vertices: of a truth whose parts touch.
+    pub(crate) fn glued(truth: &Truth, soup: &PolygonSoup, seed: u64) -> Self {
+        let mut faulty = Self::new(truth, seed);
+        faulty.faces.iter_mut().zip(soup.polygons.iter()).for_each(|(face, glued)| face.0 = glued.to_vec());
+        faulty
     }
 
     pub(crate) fn soup(&self) -> PolygonSoup {
@@ -325,7 +332,7 @@ pub(crate) fn isolated(it: &mut Faulty) {
     }
 }
 
-/// Everything that can come together, in an order in which it can.
+/// Everything that can come together but contact, which [`touched_at_an_edge`] brings, in an order in which it can.
 pub(crate) fn all_at_once(it: &mut Faulty) {
     for fault in [holes, caps, needles, t_junctions, fins, duplicate, duplicate_reversed, flip] {
         fault(it);
@@ -387,6 +394,42 @@ pub(crate) fn touching_at_an_edge(truth: &Truth) -> Option<(Truth, PolygonSoup)>
         .map_positions(|p| if on(p) { p } else { p - normal * 2.0 * (p - plane).dot(normal) })
         .expect("finite");
     Some(glued(truth, &other, on))
+}
+
+/// The shape and a small tetrahedron that stands on one of its edges, which both name: four faces at that edge. The edge is
+/// one at random where the shape bends outward, or not at all.
+pub(crate) fn touched_at_an_edge(truth: &Truth, noise: &mut Noise) -> (Truth, PolygonSoup) {
+    let points = truth.pool.positions();
+    let at = |v: u32| points[v as usize];
+    let mut sides: BTreeMap<[u32; 2], Vec<(DVec3, DVec3)>> = BTreeMap::new();
+    for face in truth.pool.polygons().iter() {
+        let corner = |i: usize| at(face[i % face.len()]);
+        let normal = (1..face.len() - 1)
+            .map(|i| (corner(i) - corner(0)).cross(corner(i + 1) - corner(0)))
+            .sum::<DVec3>();
+        let normal = normal.normalize();
+        for i in 0..face.len() {
+            let (a, b) = (face[i], face[(i + 1) % face.len()]);
+            // Into the face.
+            let inward = normal.cross(at(b) - at(a)).normalize();
+            sides.entry([a.min(b), a.max(b)]).or_default().push((normal, inward));
+        }
+    }
+    let bends_outward = |s: &[(DVec3, DVec3)]| s[0].1.dot(s[1].0) < 1e-9;
+    let edges: Vec<_> = sides.into_iter().filter(|s| bends_outward(&s.1)).collect();
+    let ([a, b], sides) = &edges[noise.below(edges.len() as u32) as usize];
+    let (p, q) = (at(*a), at(*b));
+    let up = (sides[0].0 + sides[1].0).normalize();
+    let across = up.cross(q - p).normalize();
+    let size = p.distance(q).min(0.05 * truth.diagonal) * 0.5;
+    let middle = p.lerp(q, 0.5);
+    let corners = vec![p, q, middle + (up + across * 0.5) * size, middle + (up - across * 0.5) * size];
+    let mut other =
+        crate::shapes::pool(corners, vec![vec![0, 1, 2], vec![1, 0, 3], vec![2, 1, 3], vec![0, 2, 3]]);
+    if Mesh::build(&other).expect("a manifold").closed().expect("closed").volume() < 0.0 {
+        other = other.reversed();
+    }
+    glued(truth, &other, |r| r == p || r == q)
 }
 
 /// Both shapes in one soup; vertices of the second that lie where one of the first is, and are shared, are named by both.

@@ -15,6 +15,10 @@ pub(super) struct Classes<'s, 'p> {
     kept: Vec<u32>,
     /// How much may still be looked at: a file made to be slow is stitched in part.
     budget: u64,
+    /// How many places may still be looked at beside that, over all edges.
+    looks: usize,
+    /// How many naked edges were not searched around to the end, and the first of them.
+    unsearched: (usize, Option<u32>),
     around: [Around; 2],
 }
 
@@ -36,6 +40,8 @@ impl<'s, 'p> Classes<'s, 'p> {
             size: vec![1; own.len()],
             kept: own,
             budget: 32 * seams.edges.len() as u64 + (1 << 22),
+            looks: 64 * seams.edges.len() + (1 << 22),
+            unsearched: (0, None),
             around: Default::default(),
         }
     }
@@ -79,7 +85,30 @@ impl<'s, 'p> Classes<'s, 'p> {
     fn spend(&mut self, on: usize) -> bool {
         let left = self.budget.checked_sub(on as u64);
         self.budget = left.unwrap_or(0);
+        if left.is_none() && self.unsearched.0 == 0 {
+            self.unsearched = (1, Some(0));
+        }
         left.is_some()
+    }
+
+    /// How many places may still be looked at over all.
+    pub(super) fn looks(&self) -> usize {
+        self.looks
+    }
+
+    /// Spends looks on what lies around a naked edge, and writes down if that was not all.
+    pub(super) fn looked(&mut self, edge: u32, looks: usize, is_all: bool) {
+        self.looks = self.looks.saturating_sub(looks);
+        if !is_all {
+            self.unsearched.0 += 1;
+            self.unsearched.1.get_or_insert(edge);
+        }
+    }
+
+    /// How many naked edges were not searched around to the end, if there are any, and the corner of the first.
+    pub(super) fn unsearched(&self) -> Option<(usize, u32)> {
+        let (count, first) = self.unsearched;
+        first.map(|edge| (count.min(self.seams.edges.len()), self.seams.edges[edge as usize].corner))
     }
 
     /// Whether two ends may be joined, or are.

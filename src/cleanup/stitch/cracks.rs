@@ -36,7 +36,7 @@ pub(super) fn pair_edges(classes: &mut Classes<'_, '_>) {
 }
 
 /// The pairs of naked edges within reach of each other, the nearest first.
-fn candidates(classes: &Classes<'_, '_>) -> Vec<Candidate> {
+fn candidates(classes: &mut Classes<'_, '_>) -> Vec<Candidate> {
     let seams = classes.seams;
     let middle = |[a, b]: [u32; 2]| seams.at(a) * 0.5 + seams.at(b) * 0.5;
     let tree = Tree::new(seams.edges.iter().map(|e| middle(e.ends)).zip(0..));
@@ -44,6 +44,11 @@ fn candidates(classes: &Classes<'_, '_>) -> Vec<Candidate> {
     let mut own: Vec<Candidate> = Vec::new();
     for (e, edge) in (0u32..).zip(&seams.edges) {
         own.clear();
+        let most = LOOKS.min(classes.looks());
+        if most == 0 {
+            classes.looked(e, 0, false);
+            continue;
+        }
         let mut looks = 0;
         tree.ball(middle(edge.ends), seams.reach, |f, _| {
             looks += 1;
@@ -54,8 +59,9 @@ fn candidates(classes: &Classes<'_, '_>) -> Vec<Candidate> {
                     own.push(Candidate { cost, edges: [e.min(f), e.max(f)] });
                 }
             }
-            if looks < LOOKS { seams.reach } else { -1.0 }
+            if looks < most { seams.reach } else { -1.0 }
         });
+        classes.looked(e, looks, looks < most);
         own.sort_unstable_by(Candidate::order);
         // Its partner thinks of it too.
         all.extend(own.iter().take(PARTNERS).filter(|c| c.edges[0] == e));
@@ -95,7 +101,7 @@ mod tests {
             let positions: Vec<DVec3> = points.iter().zip(&off).map(place).collect();
             let faces: Polygons = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
             let seams = Seams::new(&positions, &faces, &Matching::new(positions.len(), &faces), 0.3);
-            let classes = Classes::new(&seams);
+            let mut classes = Classes::new(&seams);
             let mut naive: Vec<[u32; 2]> = Vec::new();
             for e in 0..seams.edges.len() as u32 {
                 for f in e + 1..seams.edges.len() as u32 {
@@ -111,7 +117,7 @@ mod tests {
                     }
                 }
             }
-            let found = candidates(&classes);
+            let found = candidates(&mut classes);
             prop_assert!(found.is_sorted_by(|a, b| a.cost <= b.cost));
             let mut found: Vec<[u32; 2]> = found.iter().map(|c| c.edges).collect();
             found.sort_unstable();

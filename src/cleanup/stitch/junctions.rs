@@ -168,16 +168,23 @@ fn join_loose_ends(classes: &mut Classes<'_, '_>, loose: &[u32]) {
     let ends = loose_ends(classes, loose);
     let tree = Tree::new(ends.iter().map(|&end| (seams.at(end), end)));
     let mut all: Vec<(f64, u32, u32)> = Vec::new();
+    let mut own: Vec<(f64, u32, u32)> = Vec::new();
     for &end in &ends {
-        let mut own: Vec<(f64, u32, u32)> = Vec::new();
+        own.clear();
+        let most = LOOKS.min(classes.looks());
+        if most == 0 {
+            // Edges, not ends, are counted, where cuts are looked for.
+            break;
+        }
         let mut looks = 0;
         tree.ball(seams.at(end), seams.reach, |other, apart| {
             looks += 1;
             if other != end {
                 own.push((apart, end.min(other), end.max(other)));
             }
-            if looks < LOOKS { seams.reach } else { -1.0 }
+            if looks < most { seams.reach } else { -1.0 }
         });
+        classes.looked(0, looks, true);
         own.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         all.extend(own.iter().take(PARTNERS));
     }
@@ -207,8 +214,6 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
     // For each vertex of the pool the last face that had its class as a corner.
     let mut in_face = vec![NONE; seams.polygons.corners().iter().max().map_or(0, |&v| v as usize + 1)];
     let mut last_face = NONE;
-    // A file made to be slow is stitched in part.
-    let mut looks = 32 * loose.len() + (1 << 22);
     // For each class how many edges it is put into.
     let mut edges_cut = vec![0; seams.vertex.len()];
     let mut hits: Vec<(f64, u32)> = Vec::new();
@@ -222,18 +227,25 @@ fn find_cuts(classes: &mut Classes<'_, '_>, loose: &[u32]) -> Vec<Cut> {
         }
         let [a, b] = edge.ends.map(|end| seams.at(end));
         hits.clear();
+        let most = classes.looks();
+        if most == 0 {
+            classes.looked(e, 0, false);
+            continue;
+        }
+        let mut looks = 0;
         tree.tube([a, b], seams.reach, |class, p| {
-            looks -= 1;
+            looks += 1;
             let (square, at) = segment_foot(a - p, b - p);
             let is_inside = p.distance(a) > seams.reach && p.distance(b) > seams.reach;
             let is_near = square.sqrt() <= seams.reach && at > 0.0 && at < 1.0;
             if is_near && is_inside && edges_cut[class as usize] < EDGES {
                 hits.push((at, class));
             }
-            looks > 0
+            looks < most
         });
-        if looks == 0 {
-            break;
+        classes.looked(e, looks, looks < most);
+        if looks == most {
+            continue;
         }
         hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let apex = seams.apex(edge);

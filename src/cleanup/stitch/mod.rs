@@ -14,7 +14,8 @@ use super::manifold::drop_duplicates;
 use super::pool::Pool;
 use super::{CleanError, Weld};
 use crate::matching::Matching;
-use crate::report::{Outcome, Step, StepSummary};
+use crate::report::{Element, Kind, Outcome, Record, Step, StepSummary};
+use crate::topology::next_corner;
 use crate::{Cancelled, Control, IndexedMesh, PolygonSoup};
 use classes::Classes;
 use seams::Seams;
@@ -29,9 +30,10 @@ use seams::Seams;
 ///   gains corners is cut into triangles with an area; a larger polygon just gains them.
 ///
 /// No face folds, no edge gets a third face, and only what pairs naked edges is done: parts that merely touch stay
-/// apart. What cannot be done so stays as it is. Corner data is interpolated along the edge.
+/// apart. What cannot be done so stays as it is: so does a vertex at an edge with several faces, a T-junction on which a fin
+/// stands too. Corner data is interpolated along the edge.
 ///
-/// O(n log n); files made to be quadratic are stitched in part.
+/// O(n log n); files made to be quadratic are stitched in part, and a record says at how many edges.
 ///
 /// # Errors
 /// [`CleanError`]: never because of what the soup holds.
@@ -69,13 +71,28 @@ pub(super) fn stitch_pool(
     tolerance: f64,
     control: &mut Control<'_>,
 ) -> Result<bool, CleanError> {
-    let (changed, moved) = match plan(pool, matching, tolerance, control)? {
+    let (plan, unsearched) = plan(pool, matching, tolerance, control)?;
+    if let Some((count, corner)) = unsearched {
+        record_unsearched(pool, count, corner as usize);
+    }
+    let (changed, moved) = match plan {
         Some(plan) => apply::apply(pool, plan)?,
         None => (0, 0.0),
     };
     let summary = StepSummary::new(Step::Stitch, changed);
     pool.report.steps.push(StepSummary { tolerance: Some(tolerance), moved, ..summary });
     Ok(changed > 0)
+}
+
+/// Records that some naked edges were not searched around to the end, at the first.
+fn record_unsearched(pool: &mut Pool<'_>, count: usize, corner: usize) {
+    let face = pool.polygons.starts().partition_point(|&s| s <= corner) - 1;
+    let ends = [corner, next_corner(&pool.polygons, face as u32, corner)].map(|c| pool.polygons.corners()[c]);
+    let [p, q] = ends.map(|v| pool.positions[v as usize]);
+    let [a, b] = ends.map(|v| pool.named(v));
+    let element = Element::Edge([a.min(b), a.max(b)]);
+    let record = Record::new(Step::Stitch, Kind::UnsearchedEdges, element, Some(p * 0.5 + q * 0.5));
+    pool.report.records.push(record.sized(count, 0.0));
 }
 
 /// What is to be done.
@@ -101,22 +118,27 @@ struct NewCorner {
     vertex: u32,
 }
 
+/// A number of naked edges, and the corner of the first.
+type Unsearched = Option<(usize, u32)>;
+
+/// What is to be done, if anything; and how many naked edges were not searched around to the end, with the corner of the first.
 fn plan(
     pool: &Pool<'_>,
     matching: &Matching,
     tolerance: f64,
     control: &mut Control<'_>,
-) -> Result<Option<Plan>, Cancelled> {
+) -> Result<(Option<Plan>, Unsearched), Cancelled> {
     if tolerance <= 0.0 {
-        return Ok(None);
+        return Ok((None, None));
     }
     let seams = Seams::new(&pool.positions, &pool.polygons, matching, tolerance);
     if seams.edges.len() < 2 {
-        return Ok(None);
+        return Ok((None, None));
     }
     control.report("stitch cracks", 0.52)?;
     let mut classes = Classes::new(&seams);
     cracks::pair_edges(&mut classes);
     control.report("stitch T-junctions", 0.55)?;
-    Ok(junctions::settle(&mut classes))
+    let plan = junctions::settle(&mut classes);
+    Ok((plan, classes.unsearched()))
 }

@@ -203,4 +203,7 @@ pub struct FilledHoles {
     pub filled: Vec<FilledHole>,
     /// What stays open.
     pub refused: Vec<RefusedHole>,
+    /// How many loops were not looked through for [islands](HoleRefusal::Islands) to the end, as there were so many loops that
+    /// might lie within each other: some may have been filled over one.
+    pub unsearched: usize,
 }

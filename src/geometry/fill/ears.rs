@@ -14,8 +14,9 @@ use glam::DVec2;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// So many corners are left to the cubic method.
-const LAST: usize = 96;
+/// So many corners are left to the cubic method; fewer where there are many loops.
+pub(super) const LAST: usize = 96;
+pub(super) const LAST_OF_MANY: usize = 16;
 
 /// How good an ear is, then the squared length of its diagonal, then its tip; and how often the tip was looked at before.
 type Entry = Reverse<(u8, u32, u32, u32)>;
@@ -43,13 +44,13 @@ struct Clipper<'r> {
 }
 
 /// A triangulation of a long loop; `None` if it came to where every ear needs an edge that is there already. O(n log n) on
-/// loops from life.
-pub(super) fn clip(ring: &Ring, pace: &mut Pace<'_, '_>) -> Result<Option<Ears>, Cancelled> {
+/// loops from life, and cubic in the `last` corners.
+pub(super) fn clip(ring: &Ring, last: usize, pace: &mut Pace<'_, '_>) -> Result<Option<Ears>, Cancelled> {
     let mut clipper = Clipper::new(ring);
     let mut ears = Vec::with_capacity(ring.len());
     let mut left = ring.len();
     let mut start = 0;
-    while left > LAST {
+    while left > last {
         let Some(Reverse((_, _, tip, look))) = clipper.heap.pop() else {
             break;
         };
@@ -199,7 +200,7 @@ mod tests {
     use glam::{DVec3, dvec3};
 
     fn clip_all(ring: &Ring) -> Ears {
-        clip(ring, &mut Pace::new(&mut Control::none())).unwrap().unwrap()
+        clip(ring, LAST, &mut Pace::new(&mut Control::none())).unwrap().unwrap()
     }
 
     fn star(n: usize, wave: f64) -> Vec<DVec3> {
@@ -264,6 +265,6 @@ mod tests {
         let mut ring = ring_of(star(2000, 0.2));
         ring.chords = (0..1998u32).map(|i| [i, i + 2]).chain([[0, 1998], [1, 1999]]).collect();
         ring.chords.sort_unstable();
-        assert_eq!(clip(&ring, &mut Pace::new(&mut Control::none())), Ok(None));
+        assert_eq!(clip(&ring, LAST, &mut Pace::new(&mut Control::none())), Ok(None));
     }
 }

@@ -13,8 +13,8 @@ const AGAINST: f64 = -0.5;
 
 /// So many steps along outer loops are taken in all, and a pair of loops counts as [`PAIR`]: a second or two. Tens of
 /// thousands of holes within a loop of tens of thousands of edges need no more; what is left after that is taken to lie
-/// beside each other.
-const STEPS: usize = 1 << 30;
+/// beside each other, and counted.
+const STEPS: usize = 1 << 29;
 const PAIR: usize = 16;
 
 /// A loop as a plane figure.
@@ -118,14 +118,15 @@ impl Flat {
 /// Groups of two and more loops around one hole, each sorted, in the order of their first loops. `is_outer` says which loops
 /// may have others within. Loops are numbered as they are given by their first half-edges.
 ///
-/// O(n log n) for the loops, and each is compared with those that begin within its box; in [`STEPS`] at most.
+/// O(n log n) for the loops, and each is compared with those that begin within its box; in [`STEPS`] at most. Also the number of
+/// loops that were not compared with all.
 pub(super) fn shared(
     mesh: &Mesh,
     loops: &[u32],
     scale: f64,
     depth: f64,
     is_outer: impl Fn(usize) -> bool,
-) -> Vec<Vec<usize>> {
+) -> (Vec<Vec<usize>>, usize) {
     let outlines: Vec<Outline> = loops.iter().map(|&first| Outline::of(mesh, first, scale)).collect();
     let begins: Vec<DVec3> = loops.iter().map(|&h| mesh.at(h) * scale).collect();
     let far = DVec3::splat(f64::INFINITY);
@@ -136,7 +137,7 @@ pub(super) fn shared(
     order.sort_unstable_by(|&a, &b| begins[a][axis].total_cmp(&begins[b][axis]).then(a.cmp(&b)));
 
     let mut group: Vec<usize> = (0..loops.len()).collect();
-    let mut steps = STEPS;
+    let (mut steps, mut unsearched) = (STEPS, 0);
     for (a, outer) in outlines.iter().enumerate() {
         if outer.normal == DVec3::ZERO || !is_outer(a) {
             continue;
@@ -146,8 +147,11 @@ pub(super) fn shared(
         let start = order.partition_point(|&b| begins[b][axis] < min[axis]);
         let mut flat = None;
         for &b in order[start..].iter().take_while(|&&b| begins[b][axis] <= max[axis]) {
-            let Some(left) = steps.checked_sub(PAIR) else { break };
-            steps = left;
+            steps = steps.saturating_sub(PAIR);
+            if steps == 0 {
+                unsearched += 1;
+                break;
+            }
             let is_near = begins[b].cmpge(min).all() && begins[b].cmple(max).all();
             if a == b || !is_near || !outer.may_hold(&outlines[b], mesh, scale, depth) {
                 continue;
@@ -162,7 +166,7 @@ pub(super) fn shared(
     let mut pairs: Vec<(usize, usize)> = (0..loops.len()).map(|i| (root(&mut group, i), i)).collect();
     pairs.sort_unstable();
     let chunks = pairs.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() > 1);
-    chunks.map(|c| c.iter().map(|p| p.1).collect()).collect()
+    (chunks.map(|c| c.iter().map(|p| p.1).collect()).collect(), unsearched)
 }
 
 fn root(group: &mut [usize], mut i: usize) -> usize {

@@ -76,7 +76,7 @@ impl Mesh {
         options.check()?;
         let loops = self.loop_firsts();
         let own = self.loop_slots(slot).find_map(|h| loops.binary_search(&h).ok()).unwrap_or(0);
-        let plan = self.plan_holes(&loops, own..own + 1, &mut options)?.pop();
+        let plan = self.plan_holes(&loops, own..own + 1, &mut options)?.0.pop();
         match plan {
             Some(Ok(plan)) => Ok(self.write_plan(&plan)),
             Some(Err(reason)) => Err(TriangulateHoleError::Refused(self.refused(slot, reason))),
@@ -134,8 +134,8 @@ impl Mesh {
         options.check()?;
         let mut loops = self.loop_firsts();
         loops.retain(|&h| is_wanted(self.face[h as usize ^ 1]));
-        let plans = self.plan_holes(&loops, 0..loops.len(), &mut options)?;
-        let mut account = FilledHoles::default();
+        let (plans, unsearched) = self.plan_holes(&loops, 0..loops.len(), &mut options)?;
+        let mut account = FilledHoles { unsearched, ..FilledHoles::default() };
         for (&first, plan) in loops.iter().zip(plans) {
             match plan {
                 Ok(plan) => account.filled.push(self.write_plan(&plan)),
@@ -164,7 +164,7 @@ impl Mesh {
         loops: &[u32],
         wanted: std::ops::Range<usize>,
         options: &mut FillHolesOptions<'_>,
-    ) -> Result<Vec<Result<Plan, HoleRefusal>>, Cancelled> {
+    ) -> Result<(Vec<Result<Plan, HoleRefusal>>, usize), Cancelled> {
         options.control.report("loops", 0.0)?;
         let scale = unit_scale(self.vertices.live().map(|v| self.positions[v as usize]));
         let parts = options.max_area_ratio.is_finite().then(|| Parts::of(self, scale));
@@ -179,6 +179,7 @@ impl Mesh {
         let mut pace = Pace::new(&mut options.control);
         let limits = Limits {
             max_edges: options.max_edges.unwrap_or(usize::MAX),
+            exact_edges: options.exact_edges,
             tolerance: options.polygon_tolerance,
             ratio: options.max_area_ratio,
         };
@@ -199,14 +200,15 @@ impl Mesh {
         options.control.report("islands", 0.85)?;
         // What stays open anyway holds no islands; but a loop that was not asked for may.
         let is_outer = |i: usize| !wanted.contains(&i) || plans[i - wanted.start].is_ok();
-        for group in islands::shared(self, loops, scale, options.island_depth, is_outer) {
+        let (groups, unsearched) = islands::shared(self, loops, scale, options.island_depth, is_outer);
+        for group in groups {
             let keys: Vec<HalfedgeKey> = group.iter().map(|&i| self.halfedge_key(loops[i])).collect();
             for i in group.into_iter().filter(|i| wanted.contains(i)) {
                 plans[i - wanted.start] = Err(HoleRefusal::Islands(keys.clone()));
             }
         }
         options.control.report("write", 0.9)?;
-        Ok(plans)
+        Ok((plans, unsearched))
     }
 
     fn plan_hole(
@@ -232,7 +234,8 @@ impl Mesh {
             let (ears, method) = if exact {
                 (minimal::lightest(&ring, &corners, pace)?, FillMethod::LeastArea)
             } else {
-                (ears::clip(&ring, pace)?, FillMethod::Ears)
+                let last = if edges > limits.exact_edges { ears::LAST } else { ears::LAST_OF_MANY };
+                (ears::clip(&ring, last, pace)?, FillMethod::Ears)
             };
             let area = ears.as_ref().map_or(0.0, |ears| ring.area_of(ears));
             (ears, area, method)
@@ -299,6 +302,7 @@ impl Mesh {
 /// The options that hold for each loop.
 struct Limits {
     max_edges: usize,
+    exact_edges: usize,
     tolerance: Option<f64>,
     ratio: f64,
 }
