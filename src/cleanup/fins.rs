@@ -15,10 +15,8 @@ use std::collections::BTreeSet;
 ///   `tolerance` (0 for equal coordinates). That is how clean-up leaves what it does not pair at an edge with three or
 ///   more faces; a wall within a solid is a fin too.
 /// - its area is at most half of that of the bodies among its hosts, and those they hang on in turn. No flat wall within a
-///   solid has more, and a body with holes is no fin of something small that touches it. A sheet, which could not be closed
-///   anyway, may have up to four times that area, if it is at most half of that of all bodies: so a small solid loses a
-///   large fin, but a mesh no sheet that is most of it. Sheets, and what cannot be oriented, are no bodies: on them nothing
-///   is dropped.
+///   solid has more, and a body with holes is no fin of something small that touches it. Sheets, and what
+///   cannot be oriented, are no bodies: on them nothing is dropped.
 ///
 /// A record for each face, in the numbers of the mesh before. O(n log n), linear without open parts.
 ///
@@ -51,17 +49,13 @@ pub fn drop_fins(mesh: &mut Mesh, tolerance: f64) -> Result<Outcome<usize>, Clea
     let hosts = hosts(mesh, &parts, tolerance)?;
     let areas = Areas::of(mesh);
     let area: Vec<f64> = parts.faces.iter().map(|faces| areas.scaled(faces)).collect();
-    let hopeless = hopeless(mesh, &parts)?;
-    let is_body: Vec<bool> = hopeless.iter().map(Option::is_none).collect();
-    let bodies: f64 = (0..parts.len()).filter(|&part| is_body[part]).map(|part| area[part]).sum();
+    let is_body: Vec<bool> = hopeless(mesh, &parts)?.iter().map(Option::is_none).collect();
     let fins: Vec<usize> = parts
         .open()
         .filter(|&part| {
             let held: f64 =
                 held_by(part, &hosts).iter().filter(|&&host| is_body[host]).map(|&host| area[host]).sum();
-            let is_sheet = hopeless[part] == Some(Kind::OpenSheet);
-            let most = if is_sheet { (4.0 * held).min(0.5 * bodies).max(0.5 * held) } else { 0.5 * held };
-            held > 0.0 && area[part] <= most
+            held > 0.0 && area[part] <= 0.5 * held
         })
         .collect();
     Ok(drop_parts(mesh, &parts, &fins, (Step::DropFins, Kind::Fin)))
