@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// How strongly a vertex is drawn to the middle of its edge, as a share of the planes' weight: decides where the planes
 /// do not.
-const PULL: f64 = 1e-9;
+const PULL: f64 = 1e-8;
 /// What the length of an edge costs, as a share of its square and the planes' weight: decides where the error does not,
 /// and is well above what rounding leaves of it.
 const LENGTH_COST: f64 = 1e-12;

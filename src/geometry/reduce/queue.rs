@@ -22,7 +22,7 @@ pub(super) struct Queue {
     done: usize,
 }
 
-const SHIFT: u32 = 17;
+const SHIFT: u32 = 16;
 /// So many buckets for costs within a factor of two.
 pub(super) const DOUBLING: usize = 1 << (23 - SHIFT);
 /// Costs are no less than zero.

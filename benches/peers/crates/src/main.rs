@@ -107,7 +107,9 @@ fn meshes(mut raw: Numbers<'_>, repeats: usize, reduced: Option<&str>) -> Result
     };
     changed("loop", &|m| m.subdivide_loop(1, true).expect("loop"));
     changed("catmull_clark", &|m| m.subdivide_catmull_clark(1, true).expect("catmull-clark"));
-    changed("sqrt3", &|m| drop(m.subdivide_sqrt3(1, false).expect("sqrt3")));
+    changed("sqrt3", &|m| {
+        m.subdivide_sqrt3(1, false).expect("sqrt3");
+    });
     changed("normals", &|m| {
         m.update_face_normals().expect("normals");
         m.update_vertex_normals_fast().expect("normals");
@@ -151,7 +153,9 @@ fn meshes(mut raw: Numbers<'_>, repeats: usize, reduced: Option<&str>) -> Result
 fn build_alum(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> alum::PolyMeshF64 {
     let mut mesh =
         alum::PolyMeshF64::with_capacity(points.len(), points.len() + triangles.len(), triangles.len());
-    points.iter().for_each(|&[x, y, z]| drop(mesh.add_vertex(alum::DVec3(x, y, z)).expect("a vertex")));
+    for &[x, y, z] in points {
+        mesh.add_vertex(alum::DVec3(x, y, z)).expect("a vertex");
+    }
     for t in triangles {
         let [a, b, c] = t.map(alum::VH::from);
         mesh.add_tri_face(a, b, c).expect("a face");
