@@ -17,8 +17,8 @@ impl Mesh {
     /// it (4 bytes a vertex and a face): [`to_indexed`](Self::to_indexed), [`numbering`](Self::numbering) and
     /// [`export_column`](Self::export_column) answer as before, and all maps and reports number elements by it. User
     /// data and attributes come along under their keys. Keys of elements are new: `numbering` before and after
-    /// translates them. Checkpoints and the record of changes stay with the old mesh. O(slots), in a quarter to half of
-    /// the time of a build more than the build itself.
+    /// translates them. Checkpoints and the record of changes stay with the old mesh. O(slots), in
+    /// the time of one to three builds.
     ///
     /// Source of the order: Morton, "A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing", 1966.
     ///
