@@ -45,7 +45,7 @@ pub(super) fn run(soup: &PolygonSoup, options: CleanOptions<'_>) -> Result<Clean
         return Ok(Cleaned { indexed: Some(indexed), mesh, report, maps, sources });
     }
     drop(indexed);
-    let mut stage = Stage { mesh, report, maps, names, is_spent: false };
+    let mut stage = Stage { mesh, report, maps, names, is_spent: false, has_slivers: false };
     if is_solid {
         solidify(&mut stage, tolerance.unwrap_or(0.0), debris, &mut control.part(0.6, 1.0))?;
     } else if let Some(fewer_than) = debris {

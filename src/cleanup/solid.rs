@@ -33,6 +33,8 @@ pub(super) struct Stage {
     pub(super) names: Names,
     /// Whether the bound on the work at slivers was reached: once is enough.
     pub(super) is_spent: bool,
+    /// Whether slivers were left when they were last looked for.
+    pub(super) has_slivers: bool,
 }
 
 /// How often the steps that change faces are run.
@@ -53,17 +55,28 @@ pub(super) fn solidify(
 ) -> Result<(), CleanError> {
     // What one step does may leave work for one before it; seldom, and hardly ever twice. Turning changes in which order
     // corners are looked at.
+    let mut is_as_built = true;
     for round in 0..MOST_ROUNDS {
         let share = 1.0 - 0.5f64.powi(round);
         let mut own = control.part(0.8 * share, 0.4 + 0.4 * share);
         let is_changed = stage.round(tolerance, debris, &mut own)?;
+        is_as_built &= !is_changed;
         if is_changed && round + 1 < MOST_ROUNDS {
             continue;
         }
         own.report("turn outward", 1.0)?;
         let turned = turn_outward(&mut stage.mesh, own.part(1.0, 1.0))?;
-        if stage.join(turned).iter().all(|part| !part.reversed) {
+        let is_turned = stage.join(turned).iter().any(|part| part.reversed);
+        is_as_built &= !is_turned;
+        let is_left = stage.has_slivers || !stage.mesh.is_closed();
+        if !is_turned && (is_as_built || !is_left) {
             break;
+        }
+        // Of changes that are as good as each other, the first is made, and which is the first depends on how the mesh is
+        // stored. What is left must be left by a second pass too, which sees the mesh as it is built from the result.
+        if !is_as_built {
+            stage.mesh = stage.mesh.rebuilt();
+            is_as_built = true;
         }
     }
     let max_tests = MOST_TESTS + 8 * stage.mesh.face_count();
@@ -117,6 +130,7 @@ impl Stage {
             SliverError::Cancelled(c) => CleanError::Cancelled(c),
         })?;
         let resolved = self.join(resolved);
+        self.has_slivers = !resolved.left.is_empty();
         self.is_spent |= resolved.left.iter().any(|left| left.obstacle == SliverObstacle::Limit);
         Ok(!resolved.resolved.is_empty())
     }
