@@ -7,6 +7,7 @@ use super::step::{Areas, Parts, unchanged};
 use super::weld::weld;
 use crate::matching::NONE;
 use crate::report::{Kind, Outcome, Step};
+use crate::topology::UnionFind;
 use crate::{Control, Mesh};
 use std::collections::BTreeSet;
 
@@ -16,7 +17,8 @@ use std::collections::BTreeSet;
 ///   more faces; a wall within a solid is a fin too.
 /// - its area is at most half of that of the bodies among its hosts, and those they hang on in turn. No flat wall within a
 ///   solid has more, and a body with holes is no fin of something small that touches it. Sheets, and what
-///   cannot be oriented, are no bodies: on them nothing is dropped.
+///   cannot be oriented, are no bodies: on them nothing is dropped. What is no body itself is held against the bodies as
+///   well that its hosts touch along edges: a flag on a small solid that stands on a large one is a fin.
 ///
 /// A record for each face, in the numbers of the mesh before. O(n log n), linear without open parts.
 ///
@@ -46,34 +48,76 @@ pub fn drop_fins(mesh: &mut Mesh, tolerance: f64) -> Result<Outcome<usize>, Clea
     if parts.len() == 1 {
         return Ok(unchanged(mesh, 0, Step::DropFins));
     }
-    let hosts = hosts(mesh, &parts, tolerance)?;
+    let place = places(mesh, tolerance)?;
+    let hosts = hosts(mesh, &parts, &place);
     let areas = Areas::of(mesh);
     let area: Vec<f64> = parts.faces.iter().map(|faces| areas.scaled(faces)).collect();
     let is_body: Vec<bool> = hopeless(mesh, &parts)?.iter().map(Option::is_none).collect();
-    let fins: Vec<usize> = parts
-        .open()
-        .filter(|&part| {
-            let held: f64 =
-                held_by(part, &hosts).iter().filter(|&&host| is_body[host]).map(|&host| area[host]).sum();
-            held > 0.0 && area[part] <= 0.5 * held
-        })
-        .collect();
+    let mut touching = None;
+    let mut fins = Vec::new();
+    for part in parts.open() {
+        let bodies: Vec<usize> = held_by(part, &hosts).into_iter().filter(|&host| is_body[host]).collect();
+        let is_held = |held: f64| held > 0.0 && area[part] <= 0.5 * held;
+        if is_held(bodies.iter().map(|&host| area[host]).sum()) {
+            fins.push(part);
+        } else if !bodies.is_empty() && !is_body[part] {
+            let (of, sums) =
+                touching.get_or_insert_with(|| touching_bodies(mesh, &parts, &place, &area, &is_body));
+            let groups: BTreeSet<u32> = bodies.iter().map(|&host| of[host]).collect();
+            if is_held(groups.iter().map(|&group| sums[group as usize]).sum()) {
+                fins.push(part);
+            }
+        }
+    }
     Ok(drop_parts(mesh, &parts, &fins, (Step::DropFins, Kind::Fin)))
 }
 
-/// For each part the parts at whose inner edges its boundary lies, ascending.
-fn hosts(mesh: &Mesh, parts: &Parts, tolerance: f64) -> Result<Vec<Vec<usize>>, CleanError> {
-    // Vertices at one place, by slot.
+/// A number for each vertex slot, which those at one place share.
+fn places(mesh: &Mesh, tolerance: f64) -> Result<Vec<u32>, CleanError> {
     let slots: Vec<u32> = mesh.vertices.live().collect();
     let positions: Vec<_> = slots.iter().map(|&v| mesh.positions[v as usize]).collect();
     let merged = weld(&positions, Some(tolerance), &mut Control::none())?;
     let mut place = vec![NONE; mesh.vertices.slot_count()];
     slots.iter().zip(merged).for_each(|(&v, to)| place[v as usize] = to);
-    let ends = |h: u32| {
-        let [a, b] = [h, h ^ 1].map(|h| place[mesh.origin[h as usize] as usize]);
-        [a.min(b), a.max(b)]
-    };
+    Ok(place)
+}
 
+/// The places of a half-edge's ends, the lower first.
+fn ends(mesh: &Mesh, place: &[u32], h: u32) -> [u32; 2] {
+    let [a, b] = [h, h ^ 1].map(|h| place[mesh.origin[h as usize] as usize]);
+    [a.min(b), a.max(b)]
+}
+
+/// Bodies in groups that touch along edges: the group of each part, and the area of each group.
+fn touching_bodies(
+    mesh: &Mesh,
+    parts: &Parts,
+    place: &[u32],
+    area: &[f64],
+    is_body: &[bool],
+) -> (Vec<u32>, Vec<f64>) {
+    let mut count = vec![0u32; place.len()];
+    mesh.vertices.live().for_each(|v| count[place[v as usize] as usize] += 1);
+    let part_of = |h: u32| mesh.face[[h, h ^ 1][usize::from(mesh.face[h as usize] == NONE)] as usize];
+    let edges = mesh.edges.live().map(|e| (ends(mesh, place, 2 * e), parts.of[part_of(2 * e) as usize]));
+    let is_shared = |(ends, part): &([u32; 2], u32)| {
+        is_body[*part as usize] && ends.iter().all(|&p| count[p as usize] > 1)
+    };
+    let mut shared: Vec<([u32; 2], u32)> = edges.filter(is_shared).collect();
+    shared.sort_unstable();
+    let mut groups = UnionFind::new(area.len());
+    for at_one_place in shared.chunk_by(|a, b| a.0 == b.0) {
+        at_one_place.windows(2).for_each(|pair| _ = groups.join(pair[0].1, pair[1].1));
+    }
+    let of: Vec<u32> = (0..area.len() as u32).map(|part| groups.root(part)).collect();
+    let mut sums = vec![0.0; area.len()];
+    (0..area.len()).filter(|&part| is_body[part]).for_each(|part| sums[of[part] as usize] += area[part]);
+    (of, sums)
+}
+
+/// For each part the parts at whose inner edges its boundary lies, ascending.
+fn hosts(mesh: &Mesh, parts: &Parts, place: &[u32]) -> Vec<Vec<usize>> {
+    let ends = |h: u32| ends(mesh, place, h);
     let mut rim: Vec<([u32; 2], u32)> =
         mesh.boundary_slots().map(|h| (ends(h), parts.of[mesh.face[h as usize ^ 1] as usize])).collect();
     rim.sort_unstable();
@@ -96,7 +140,7 @@ fn hosts(mesh: &Mesh, parts: &Parts, tolerance: f64) -> Result<Vec<Vec<usize>>, 
         of.sort_unstable();
         of.dedup();
     }
-    Ok(hosts)
+    hosts
 }
 
 /// All that a part hangs on, directly and in turn, without the part itself.
