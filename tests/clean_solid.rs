@@ -90,6 +90,24 @@ fn a_body_with_a_hole_is_no_fin_of_a_small_solid_that_touches_its_rim() {
 }
 
 #[test]
+fn a_sheet_on_a_small_solid_that_touches_a_large_one_along_an_edge_is_a_fin() {
+    // A small tetrahedron stands on the upper edge of a large box; a flag of more than its area hangs on its tip.
+    let mut soup = soup(&scaled(&cube(), 10.0));
+    let [a, b] = [4, 5].map(|v| soup.positions[v as usize]);
+    let n = soup.positions.len() as u32;
+    let up = |x: f64, y: f64, z: f64| a.lerp(b, x) + dvec3(0.0, y, z);
+    soup.positions.extend([up(0.4, -0.1, 1.0), up(0.6, -0.1, 2.0), up(0.5, -40.0, 50.0)]);
+    let tetrahedron = [[4, 5, n + 1], [4, n + 1, n], [5, n, n + 1], [4, n, 5]];
+    tetrahedron.into_iter().for_each(|face| soup.polygons.push(face));
+    let without_flag = solid(&soup);
+    assert!(without_flag.value.is_closed());
+    soup.polygons.push([n, n + 1, n + 2]);
+    let outcome = solid(&soup);
+    assert_eq!(outcome.report.count(Kind::Fin), 1);
+    assert_eq!(outcome.value.to_indexed(), without_flag.value.to_indexed());
+}
+
+#[test]
 fn a_sheet_keeps_what_hangs_on_it() {
     let outcome = solid(&soup(&shapes::fins()));
     assert_eq!(outcome.value.face_count(), 3);
