@@ -107,7 +107,7 @@ fn touching_bodies(
     shared.sort_unstable();
     let mut groups = UnionFind::new(area.len());
     for at_one_place in shared.chunk_by(|a, b| a.0 == b.0) {
-        at_one_place.windows(2).for_each(|pair| _ = groups.join(pair[0].1, pair[1].1));
+        at_one_place.windows(2).for_each(|pair| groups.join(pair[0].1, pair[1].1));
     }
     let of: Vec<u32> = (0..area.len() as u32).map(|part| groups.root(part)).collect();
     let mut sums = vec![0.0; area.len()];
