@@ -43,60 +43,37 @@ impl Mesh {
         // Numbers below are those of the indexed form.
         let order = self.vertices.in_user_order();
         let along = along_a_curve((0..).zip(&order).map(|(i, &v)| (self.positions[v as usize], i)));
-        let corners = self.corners_by_rank(&order, &inverse(&along));
-        let lowest = corners.iter().map(|c| c.iter().copied().min().unwrap_or_default());
-        let by_vertex = sorted_by(lowest.collect(), order.len());
-        let mut polygons = Polygons::with_capacity(corners.len(), corners.corners().len());
-        by_vertex.iter().for_each(|&i| polygons.push(corners[i as usize].iter().copied()));
-        drop(corners);
-        let at = along.iter().map(|&i| self.positions[order[i as usize] as usize]);
-        let Some(mut new) = self.laid_out_as(at.collect(), polygons) else { return self.clone() };
-        rank(&mut new.vertices, &inverse(&along));
-        rank(&mut new.faces, &inverse(&by_vertex));
-        self.hand_over_data(&mut new);
-        new
-    }
-
-    /// The same mesh as if it were built from its indexed form, so that what an algorithm makes of it cannot depend on how
-    /// it came to be. Data comes along as [`reorder`](Self::reorder) has it.
-    pub(crate) fn rebuilt(&self) -> Self {
-        let order = self.vertices.in_user_order();
-        let numbers: Vec<u32> = (0..order.len() as u32).collect();
-        let polygons = self.corners_by_rank(&order, &numbers);
-        let positions = order.iter().map(|&v| self.positions[v as usize]).collect();
-        let Some(mut new) = self.laid_out_as(positions, polygons) else { return self.clone() };
-        self.hand_over_data(&mut new);
-        new
-    }
-
-    /// The corners of all faces in the user's order, each vertex of `order` as its rank. The links are walked once: what
-    /// they lead to may be scattered.
-    fn corners_by_rank(&self, order: &[u32], ranks: &[u32]) -> Polygons {
+        let vertex_rank = inverse(&along);
         let mut place = vec![NONE; self.vertices.slot_count()];
-        order.iter().zip(ranks).for_each(|(&v, &rank)| place[v as usize] = rank);
-        let mut corners = Polygons::with_capacity(self.face_count(), 3 * self.face_count());
-        for f in self.faces.in_user_order() {
+        order.iter().zip(&vertex_rank).for_each(|(&v, &rank)| place[v as usize] = rank);
+        let faces = self.faces.in_user_order();
+        // The links are walked once: what they lead to is scattered.
+        let mut corners = Polygons::with_capacity(faces.len(), 3 * faces.len());
+        for &f in &faces {
             let around = self.loop_slots(self.face_halfedge[f as usize]);
             corners.push(around.map(|h| place[self.origin[h as usize] as usize]));
         }
-        corners
-    }
-
-    /// Of the same vertices and faces. A mesh is a manifold in any order; if it were not, there is `None`.
-    fn laid_out_as(&self, positions: Vec<DVec3>, polygons: Polygons) -> Option<Self> {
+        let lowest = corners.iter().map(|c| c.iter().copied().min().unwrap_or_default());
+        let by_vertex = sorted_by(lowest.collect(), order.len());
+        let mut polygons = Polygons::with_capacity(faces.len(), corners.corners().len());
+        by_vertex.iter().for_each(|&i| polygons.push(corners[i as usize].iter().copied()));
+        drop(corners);
+        let positions: Vec<DVec3> =
+            along.iter().map(|&i| self.positions[order[i as usize] as usize]).collect();
         let pool = IndexedMesh::trusted(positions, polygons, None);
         let pairing = Chains::new(pool.vertex_count(), pool.polygons()).into_pairing();
-        lay_out(&pool, &pairing)
-    }
-
-    /// Gives user data and attributes to the same mesh laid out anew.
-    fn hand_over_data(&self, new: &mut Self) {
+        // A mesh is a manifold in any order; if it were not, it would stay as it is.
+        let Some(mut new) = lay_out(&pool, &pairing) else { return self.clone() };
+        drop((pool, pairing));
+        rank(&mut new.vertices, &vertex_rank);
+        rank(&mut new.faces, &inverse(&by_vertex));
         new.columns = Columns::in_order(self, |_, _| true);
         new.carried = self.carried.clone();
         for kind in Kind::ALL.into_iter().filter(|&kind| !self.columns.none_on(kind)) {
             let (slots, placed) = (new.slots_of(kind), new.ordered_slots(kind));
             new.columns.place(kind, slots, placed.into_iter());
         }
+        new
     }
 }
 

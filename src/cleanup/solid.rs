@@ -74,10 +74,8 @@ pub(super) fn solidify(
         }
         // Of changes that are as good as each other, the first is made, and which is the first depends on how the mesh is
         // stored. What is left must be left by a second pass too, which sees the mesh as it is built from the result.
-        if !is_as_built {
-            stage.mesh = stage.mesh.rebuilt();
-            is_as_built = true;
-        }
+        stage.mesh = Mesh::build(&stage.mesh.to_indexed()).map_err(CleanError::Bug)?;
+        is_as_built = true;
     }
     let max_tests = MOST_TESTS + 8 * stage.mesh.face_count();
     let hook = control.part(0.85, 0.97);
